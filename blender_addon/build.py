@@ -143,7 +143,7 @@ def build_own_wheel(version: str, cache: Path) -> Path:
     the same name and version comes with a newer zip.
 
     The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
-    and OpenColorIO, and the add-on does not import what only the command needs (tqdm, shtab, matplotlib).
+    and OpenColorIO, and the add-on does not import what only the command needs (tqdm, matplotlib).
     """
     fetch_wheel(_setuptools(), cache)
     with tempfile.TemporaryDirectory() as folder:

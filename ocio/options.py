@@ -38,9 +38,7 @@ def device_name(device: Device | None) -> str | None:
 class PlateOptions:
     """How linear plates are written.
 
-    `gray` is the encoded brightness of a surface that reflects 18 % of the light, which becomes a linear 0.18. By
-    default white is the anchor: brightness 1 becomes a linear 1. `output_space` is linear Rec.709 ("scene_linear"), the
-    plate's own primaries ("plate"), or a space of ACES.
+    `gray` is the encoded brightness that becomes a linear 0.18; by default brightness 1 becomes a linear 1.
     """
 
     depth: str = DEPTHS[0]  # sample type of the EXR files

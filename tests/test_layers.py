@@ -18,18 +18,18 @@ for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
         importlib.import_module(module.name)
 """
 
-HEAVY = {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib", "shtab"}
+HEAVY = {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
 
 
 @pytest.mark.parametrize(
     ("code", "guests"),
     [
-        (IMPORT_ALL, {"bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy"}),
+        (IMPORT_ALL, {"bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "scipy"}),
         # a name of the core is imported at its first use, and `crfnet --help` does not wait
         ("import crfnet_core", HEAVY),
         ("import crfnet.cli.main; crfnet.cli.main.build_parser()", HEAVY),
         # Blender's package holds neither the command's libraries nor matplotlib
-        ("import crfnet.pipeline, crfnet.configs.derived", {"bpy", "torch", "matplotlib", "tqdm", "shtab", "fileseq"}),
+        ("import crfnet.pipeline, crfnet.configs.derived", {"bpy", "torch", "matplotlib", "tqdm", "fileseq"}),
     ],
     ids=["core", "start of the core", "start of the command", "pipeline"],
 )

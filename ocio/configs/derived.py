@@ -51,15 +51,12 @@ def write_derived_config(
     others: Mapping[str, Lut1D] | None = None,
     overwrite: bool = False,
 ) -> DerivedConfig:
-    """Write `CONFIG_NAME` to `folder`: a base with plates' color spaces and file rules; and the LUTs next to it.
+    """Write `CONFIG_NAME` and LUTs to `folder`, which is not the base's: a base with plates' color spaces and rules.
 
-    A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". Names that cameras
-    give again and again ("IMG_0001.JPG") get no file rule: it would catch files of others. `others` are further LUT
-    files, by their names. The folder is made if need be, and may not be the base's.
-
-    Raise a ConfigError, LutError or PlateError, and leave the folder as it was, if it cannot be written to, a file
-    exists and may not be replaced, the base cannot be built on, or OpenColorIO refuses the config or converts otherwise
-    than the LUTs.
+    A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". `others` are further
+    LUT files, by their names. Raise a ConfigError, LutError or PlateError, and leave the folder as it was, if a file
+    exists and may not be replaced or cannot be written, or OpenColorIO refuses the config or converts otherwise than
+    the LUTs.
     """
     check_config_folder(folder)
     if base.path is not None and folder.is_dir() and folder.samefile(base.path.parent):

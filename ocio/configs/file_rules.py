@@ -65,12 +65,11 @@ def rule_regex(patterns: Iterable[str]) -> str:
 
 
 def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
-    """Put the file rule of a plate before all others of a config, in place, and return whether it is there.
+    """Put the file rule `name` of a plate before all others of a config, in place, and return whether it is there.
 
-    `name` is the plate's color space, perhaps with `LINEAR_SUFFIX`; `space` is the color space of the files; `patterns`
-    are at least one. Where a rule of another plate leads one of the files to another space, the name alone does not
-    identify the plate, and neither gets the file: the other rule then leads to the space that the file has without
-    both, and stays, so that a third plate of the name finds it.
+    Where a rule of another plate leads one of the files to another space than `space`, the name alone does not identify
+    the plate, and neither gets the file: the other rule then leads to the space that the file has without both, and
+    stays, so that a third plate of the name finds it.
     """
     is_shared = [_release(config, pattern, space) for pattern in patterns]
     if any(is_shared):

@@ -104,7 +104,9 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
             loaded.setWorkingDir(str(Path(path).parent))  # where its LUTs lie
             loaded.validate()
             for name, lut in check.items():
-                _check_conversion(loaded, name, lut)
+                difference = _conversion_error(loaded, name, lut)
+                if not difference <= TOLERANCE:
+                    raise ConfigError("config_differs_from_lut", name=name, difference=difference)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError("config_invalid", path=path, reason=problem) from problem
 
@@ -119,18 +121,11 @@ def _whole_configs() -> Iterator[None]:
         os.environ.update(hidden)
 
 
-def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
-    """Raise a ConfigError unless a color space converts as its LUT does."""
+def _conversion_error(config: OCIO.Config, name: str, lut: Lut1D) -> float:
+    """Return the largest difference between a color space and its LUT, in both directions and beyond both ends."""
     space = config.getColorSpace(name)
     if space is None:
         raise ConfigError("color_space_absent", name=name)
-    worst = _conversion_error(config, space, lut)
-    if not worst <= TOLERANCE:
-        raise ConfigError("config_differs_from_lut", name=name, difference=worst)
-
-
-def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -> float:
-    """Return the largest difference between a color space and its LUT, in both directions and beyond both ends."""
     low, high = lut.domain
     margin = (high - low) / 8
     brightness = np.linspace(low - margin, high + margin, CHECKED_VALUES, dtype=np.float32)
@@ -138,8 +133,8 @@ def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -
     config.addColorSpace(linear)
     gain = np.float32(2 ** plate_exposure(space))
     expected = lut.apply(brightness) * gain
-    irradiance = _converted(config, space.getName(), linear.getName(), brightness)
-    back = _converted(config, linear.getName(), space.getName(), expected)
+    irradiance = _converted(config, name, linear.getName(), brightness)
+    back = _converted(config, linear.getName(), name, expected)
     scale = np.maximum(np.abs(expected), 1)
     forward = np.abs(irradiance - expected) / scale
     # The inverse of a flat part is not determined in float32, so a brightness also passes if it gives the irradiance.

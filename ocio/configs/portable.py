@@ -26,9 +26,8 @@ MOST_PLATES_WITH_VIEWS = 16
 def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     """Return a config of profile 2.0 with plates' color spaces, for every host from OpenColorIO 2.0 on.
 
-    Its reference and scene-linear space is linear Rec.709 with a D65 white. Its color spaces have the names that
-    Blender uses, so that Blender's files find them. Up to `MOST_PLATES_WITH_VIEWS` plates get views "as photographed".
-    Raise a ConfigError if two spaces share a name, or one takes a name of the config.
+    Its reference and scene-linear space is linear Rec.709 with a D65 white; its color spaces have Blender's names, so
+    that Blender's files find them. Raise a ConfigError if two spaces share a name, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
     for primaries in ADDED_PRIMARIES:

@@ -6,5 +6,4 @@ files        the formats that are written: .spi1d, .cube, .clf
 opencolorio  LUT files of any format, as OpenColorIO reads them
 response     the response from a LUT of its inverse, or from a LUT file of either direction
 forward      the response itself as a table, from light to codes
-exposure     the stops that put white at 1 or 18 % gray at 0.18
 """

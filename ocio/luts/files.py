@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from crfnet_core.files import atomic_write_text
@@ -13,16 +12,7 @@ from ..errors import LutError
 from .opencolorio import read_lut
 from .rgb_lut import AnyLut, table_rows
 
-__all__ = ["WRITERS", "LutFormat", "read_lut", "write_lut"]
-
-
-@dataclass(frozen=True)
-class LutFormat:
-    """A format that LUTs are written in: its suffix in lower case, its name in words, and the text of a LUT in it."""
-
-    suffix: str
-    title: str
-    text: Callable[[AnyLut], str]
+__all__ = ["WRITERS", "read_lut", "write_lut"]
 
 
 def _spi1d_text(lut: AnyLut) -> str:
@@ -37,8 +27,6 @@ def _spi1d_text(lut: AnyLut) -> str:
 def _cube_text(lut: AnyLut) -> str:
     """Return a LUT as the text of a 1D .cube file of three columns, with its comments at the top.
 
-    A domain other than [0, 1] is written as DOMAIN_MIN and DOMAIN_MAX.
-
     Source: Adobe, "Cube LUT Specification 1.0", 2013; OpenColorIO, `FileFormatIridasCube.cpp`.
     """
     low, high = lut.domain
@@ -51,9 +39,7 @@ def _cube_text(lut: AnyLut) -> str:
 def _clf_text(lut: AnyLut) -> str:
     """Return a LUT as the text of a CLF 3.0 file: one LUT1D, after a Range if its domain is not [0, 1].
 
-    The id is a hash of the table and its domain, so equal LUTs have equal ids. OpenColorIO's `GroupTransform.write`
-    keeps only eight digits, so neighboring float32 values may become equal, and its output depends on its version.
-
+    OpenColorIO's `GroupTransform.write` keeps only eight digits, so neighboring float32 values may become equal.
     Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 2136-1.
     """
     depth = 'inBitDepth="32f" outBitDepth="32f"'
@@ -70,15 +56,8 @@ def _clf_text(lut: AnyLut) -> str:
     return "\n".join([*lines, *table_rows(lut), "        </Array>", "    </LUT1D>", "</ProcessList>", ""])
 
 
-#: The formats that are written, by suffix; each estimate writes all of them, and configs name the first.
-WRITERS = {
-    each.suffix: each
-    for each in (
-        LutFormat(".spi1d", "Sony Imageworks 1D", _spi1d_text),
-        LutFormat(".cube", "Adobe and Resolve 1D cube", _cube_text),
-        LutFormat(".clf", "Academy Common LUT Format", _clf_text),
-    )
-}
+#: Suffix of each format that is written -> the text of a LUT in it. Each estimate writes all; configs name the first.
+WRITERS: Mapping[str, Callable[[AnyLut], str]] = {".spi1d": _spi1d_text, ".cube": _cube_text, ".clf": _clf_text}
 
 
 def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
@@ -101,4 +80,4 @@ def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None
     path = Path(path)
     if path.suffix.lower() not in WRITERS:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(WRITERS))
-    atomic_write_text(path, WRITERS[path.suffix.lower()].text(lut), overwrite=overwrite, error=LutError)
+    atomic_write_text(path, WRITERS[path.suffix.lower()](lut), overwrite=overwrite, error=LutError)

@@ -23,9 +23,8 @@ def forward_lut(lut: AnyLut) -> AnyLut:
     """Return the response, from light to code values, of a LUT of its inverse whose domain holds [0, 1].
 
     The inputs are uniform from the light of code 0 to the light of the largest code; other light is clipped to these.
-    An estimated response is linear between 1024 samples, so 1024 entries hold it. A response that is steeper in the
-    blacks, as a power function is, needs more: the length is the first of `LENGTHS` whose `round_trip_error` at 10 bits
-    is at most `MOST_ERROR`, or the last. Two comments come before the LUT's own: the direction, and the error.
+    The length is the first of `LENGTHS` whose `round_trip_error` at 10 bits is at most `MOST_ERROR`, or the last: a
+    response that is steeper in the blacks, as a power function is, needs more than 1024.
     """
     for length in LENGTHS:
         forward = _sampled(lut, length)

@@ -58,7 +58,8 @@ def read_lut(path: str | Path) -> AnyLut:
     domain = _domain(steps[0])
     rest = steps[1:] if domain else steps
     domain = domain or (0.0, 1.0)
-    table = _raised(path, _entries(rest[0]) if len(rest) == 1 else _sampled(steps, domain))
+    table = np.reshape(rest[0].getData(), (-1, 3)) if len(rest) == 1 else _sampled(steps, domain)
+    table = _raised(path, table.astype(np.float64))
     try:
         return lut_of_columns(table, domain=domain, comments=comments)
     except LutError as problem:
@@ -128,11 +129,6 @@ def _domain(step: OCIO.Transform) -> tuple[float, float] | None:
     if isinstance(step, OCIO.RangeTransform) and (step.getMinOutValue(), step.getMaxOutValue()) == (0, 1):
         return step.getMinInValue(), step.getMaxInValue()
     return None
-
-
-def _entries(table: OCIO.Lut1DTransform) -> Float64Array:
-    """Return the entries of a table, shape (N, 3)."""
-    return np.asarray(table.getData(), dtype=np.float64).reshape(-1, 3)
 
 
 def _sampled(steps: list[OCIO.Transform], domain: tuple[float, float]) -> Float64Array:

@@ -56,10 +56,7 @@ def read_response(path: str | Path) -> ResponseFile:
 
 
 def response_of_lut(lut: AnyLut) -> ResponseCurve:
-    """Return the response whose inverse a LUT is, scaled so that brightness 1 is irradiance 1.
-
-    Between its samples the response is linear, so its inverse is not quite the LUT: for the LUT of a response with the
-    usual length, the two differ by less than 5e-5, white = 1.
+    """Return the response whose inverse a LUT is, scaled so that brightness 1 is irradiance 1; it is the LUT's to 5e-5.
 
     Raise a LutError if the LUT treats the channels apart, its domain does not hold [0, 1], black is not 0, or it
     brightens: it then leads from light to codes. Raise a CurveError if the response does not increase strictly.

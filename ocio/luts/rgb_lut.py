@@ -52,11 +52,6 @@ class RgbLut1D:
         inputs = np.asarray(pixels)
         return np.stack([lut.apply(inputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
-    def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
-        """Return the input of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply_inverse`."""
-        outputs = np.asarray(pixels)
-        return np.stack([lut.apply_inverse(outputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
-
 
 #: A LUT for all channels, or one for each.
 AnyLut: TypeAlias = Lut1D | RgbLut1D

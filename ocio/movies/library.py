@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,9 @@ SIGNATURES = (
 
 #: Distances in bytes between the sync bytes of an MPEG transport stream, and the place of the first one.
 _TRANSPORT = ((188, 0), (192, 4))
+
+#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display.
+IPT_PROFILE = 5
 
 #: Seconds after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 OPENING = 60
@@ -81,6 +85,24 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
             yield container, stream
     except (av.FFmpegError, UnicodeDecodeError) as problem:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
+
+
+def dolby_vision_profile(stream: VideoStream) -> int:
+    """Return the profile of Dolby Vision, or 0: of the box that FFmpeg would write, as PyAV does not give it."""
+    import av
+
+    if stream.codec_context.codec.canonical_name != "hevc":
+        return 0
+    header, options = BytesIO(), {"movflags": "empty_moov", "strict": "unofficial"}
+    try:
+        with av.open(header, "w", format="mp4", options=options) as container:
+            container.add_stream_from_template(stream)
+            container.start_encoding()
+            content = header.getvalue()
+    except (av.FFmpegError, ValueError):
+        return 0
+    at = content.find(b"dvcC")
+    return content[at + 6] >> 1 if at >= 0 else 0
 
 
 def undecodable(path: Path, reason: str) -> PlateError:

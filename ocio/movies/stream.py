@@ -19,8 +19,7 @@ from crfnet_core.photograph.orientation import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
-from .dolby_vision import IPT_PROFILE, dolby_vision_profile
-from .library import ffmpeg_line, opened, undecodable
+from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, opened, undecodable
 
 if TYPE_CHECKING:
     from av import VideoFrame

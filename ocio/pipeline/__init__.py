@@ -1,9 +1,8 @@
 """The one way from photographs to files, for the command and for the add-on.
 
-estimates    photographs, frames and movies to the response estimated from them, and its LUT
+estimates    photographs, frames and movies to the response estimated from them; what this needs of the options
 plan         the files of one estimate, checked before any work is done
 delivery     the same, written together
-loading      the network, the prior and the stored camera that the options name
 batch        many photographs: what they have in common, and the files of each
 each         the two kinds of batches: estimates with their files, and linear EXR
 run          the work of a batch: recorded as it ends, continued when interrupted
@@ -16,12 +15,19 @@ Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the 
 called with (done, total); whatever it raises ends the step, which first removes its unfinished files.
 """
 
-from ..luts.exposure import anchored_exposure
+from ..plates.light import anchored_exposure
 from .calibrations import is_pairs, plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EstimateBatch, LinearBatch
-from .estimates import FileEstimate, estimate_files, photograph_sources, response_lut
-from .loading import load_camera_response, load_network, load_prior
+from .estimates import (
+    FileEstimate,
+    estimate_files,
+    load_camera_response,
+    load_network,
+    load_prior,
+    photograph_sources,
+    response_lut,
+)
 from .photographs import find_photographs
 from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord

@@ -21,8 +21,7 @@ from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, plain_stem
 from ..plates.light import PlateLight
 from ..report import result_line
-from .estimates import response_lut
-from .loading import load_camera_response, load_network, load_prior
+from .estimates import load_camera_response, load_network, load_prior, response_lut
 from .photographs import unreadable_reason
 from .records import PhotographRecord, RecordFile
 
@@ -135,14 +134,13 @@ class Task:
         return record.options == self.options and all(path.exists() for path in self.targets)
 
 
-def plan_tasks(batch: Batch, photographs: Mapping[Path, Path]) -> list[Task]:
+def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]) -> list[Task]:
     """Return a task for each photograph of `find_photographs`, after checking that it can be done; create nothing.
 
-    Two photographs of one name in one folder get files of different names: `a` and `a_2` for a.jpg and a.png.
-    A photograph keeps its name of an earlier run. Raise PlateError if a photograph or a config of
-    another program would be replaced, there are results of other options, or the folder cannot be used.
+    A photograph keeps its name of an earlier run. Raise PlateError if a photograph or a config of another program would
+    be replaced, there are results of other options, or the folder cannot be used.
     """
-    records, digest = batch.records.read(), batch.digest()
+    digest = batch.digest()
     folders = dict.fromkeys(photographs.values()) if batch.has_config else {}
     configs = [batch.out / folder / CONFIG_NAME for folder in folders]
     stems = _distinct_stems(batch, photographs, records)

@@ -65,13 +65,11 @@ def deliver(
     linearize: Linearize = linearize_plates,
     progress: Progress | None = None,
 ) -> tuple[Path, ...]:
-    """Write the LUTs, the config and the linear plates of a plan; return the files.
+    """Write the LUTs, the config, the linear plates and `more` files of a plan, by their writers; return the files.
 
-    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames.
-    `more` are further files, each with a callable that writes it under the path that it is called with. `linearize`
-    writes linear frames, as `linearize_plates` does. The progress callback is called after every frame of a sequence,
-    perhaps in another thread. Raise CRFNetError if a file exists and may not be replaced or cannot be written, or
-    OpenColorIO refuses the config; then, and if the callback raises, the folder is as it was.
+    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames,
+    of which `progress` counts, perhaps in another thread. Raise CRFNetError if a file exists and may not be replaced or
+    cannot be written, or OpenColorIO refuses the config; then, and if the callback raises, the folder is as it was.
     """
     more = more or {}
     written = (*plan.targets, *more)
@@ -146,14 +144,13 @@ def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator
 def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
     """Return the meaning of the linear values of an estimate's photographs; the LUT's comments name its primaries, too.
 
-    Raise CRFNetError if the LUT length is out of range, the photographs differ in their primaries, or these are unknown
-    and have to be converted.
+    Raise CRFNetError if the photographs differ in their primaries, or these are unknown and have to be converted.
     """
     tags = {path: facts.tags for path, facts in zip(estimated.paths, estimated.firsts, strict=True)}
     plate = common_primaries(tags, plates.primaries)
     lut = response_lut(estimated.estimate, length=lut_length)
     comment = f"Primaries: {plate}; the LUT leaves them as they are"
-    return PlateLight.of(estimated.firsts[0].tags, replace(lut, comments=(*lut.comments, comment)), plates)
+    return PlateLight.from_tags(estimated.firsts[0].tags, replace(lut, comments=(*lut.comments, comment)), plates)
 
 
 def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries, linear: LinearSpace) -> PlateColorSpace:

@@ -25,8 +25,7 @@ from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
 from .batch import Batch, Task
 from .delivery import deliver_estimate, estimated_light, with_light
-from .estimates import estimate_files, response_lut
-from .loading import load_network, load_prior
+from .estimates import estimate_files, load_network, load_prior, response_lut
 from .plan import OutputPlan
 from .records import PhotographRecord
 

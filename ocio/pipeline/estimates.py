@@ -5,15 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from crfnet_core.estimate.analysis import CutPhotograph, cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
-from crfnet_core.library import offered_cameras, with_camera
+from crfnet_core.library import Camera, camera_estimate, find_camera, offered_cameras, with_camera
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
+from crfnet_core.posterior import Prior
 from crfnet_core.types import Float32Array, Progress
 
 from ..defaults import LUT_LENGTH
@@ -25,7 +28,6 @@ from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
 from ..report import PhotoFacts, provenance
-from .loading import load_camera, load_network, load_prior
 from .photographs import is_folder, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -38,7 +40,6 @@ class PhotographFacts:
 
     report: PhotoFacts
     tags: ColorTags  # its primaries, as the file names them
-    alpha: str  # see `FileMetadata.alpha`
     plate: PlateSource  # the file, or the frame of a movie
     preview: Float32Array  # every `stride`-th pixel, (h, w, 3), in [0, 1]; empty except of the first photograph
     stride: int
@@ -50,7 +51,6 @@ class PhotographFacts:
         return cls(
             report=PhotoFacts.from_photo(photo),
             tags=metadata.color if metadata else ColorTags(),
-            alpha=metadata.alpha if metadata else "",
             plate=plate,
             preview=photo[::stride, ::stride].copy() if has_preview else photo[:0, :0].copy(),
             stride=stride,
@@ -153,3 +153,30 @@ def _cut_photographs(
 def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
     """Return the inverse of an estimated response as a LUT with its provenance: LutError unless 2 to 65536 long."""
     return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))
+
+
+def load_network(options: EstimateOptions) -> ResponseNetwork:
+    """Return the network that the options name; the last one stays loaded."""
+    return _network(options.model, options.threads)
+
+
+def load_prior(options: EstimateOptions) -> Prior:
+    """Return the prior that the options name, whose file may change while a process lives."""
+    return Prior.load(options.prior)
+
+
+def load_camera(options: EstimateOptions) -> Camera | None:
+    """Return the stored camera that the options name; None if they name none."""
+    return None if options.camera is None else find_camera(options.camera)
+
+
+def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
+    """Return the response of that camera, for photographs that nobody looks at; None without one."""
+    camera = load_camera(options)
+    return None if camera is None else camera_estimate(camera)
+
+
+@lru_cache(maxsize=1)
+def _network(model: Path | None, threads: int) -> ResponseNetwork:
+    """Return a network."""
+    return ResponseNetwork.load(model, threads=threads)

@@ -47,13 +47,7 @@ class PhotographRecord:
 
     @classmethod
     def from_entry(cls, entry: Mapping[str, Any]) -> PhotographRecord:
-        """Return the record of a line; entries that this version does not know are left out.
-
-        Raises
-        ------
-        ArithmeticError, AttributeError, KeyError, TypeError, ValueError
-            If it is not a record, or leads to files in other folders.
-        """
+        """Return the record of a line, without unknown entries; what is not a record raises errors of Python."""
         known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
         record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
@@ -86,13 +80,7 @@ class RecordFile:
         self.path = path
 
     def read(self) -> dict[str, PhotographRecord]:
-        """Return the last record of each photograph; a line that a killed run cut short is left out.
-
-        Raises
-        ------
-        PlateError
-            If the file holds something else.
-        """
+        """Return the last record of each photograph, without a line cut short; PlateError if it is another file."""
         if not self.path.exists():
             return {}
         *lines, _ = self.path.read_bytes().split(b"\n")

@@ -57,9 +57,10 @@ def run_batch(
         read, a process dies, or no scheduler answers; not if a photograph is bad.
     """
     batch.check()
-    tasks = plan_tasks(batch, photographs)
+    records = batch.records.read()
+    tasks = plan_tasks(batch, photographs, records)
     with output_folder(batch.out):
-        records = {} if batch.plates.overwrite else batch.records.read()
+        records = {} if batch.plates.overwrite else records
         todo = [task for task in tasks if not task.is_done(records.get(str(task.photo)))]
         done = len(tasks) - len(todo)
         show_progress(progress, done, len(tasks))

@@ -19,23 +19,19 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
     """Yield an executor; at the end of the block, what has not begun is dropped and what has begun is finished.
 
     `workers` are processes of this machine; one works in this process. `scheduler` is the address of a Dask scheduler,
-    such as "tcp://10.0.0.1:8786": its workers need this package and the same files under the same names, and a job
-    whose worker dies is done again. Raise PlateError if Dask is not installed, or no scheduler answers.
+    such as "tcp://10.0.0.1:8786". Raise PlateError if Dask is not installed, or no scheduler answers.
     """
     if scheduler is not None:
-        with _dask_pool(scheduler) as pool:
-            yield pool
+        with _dask_pool(scheduler) as cluster:
+            yield cluster
         return
-    pool = _process_pool(workers) if workers > 1 else ThreadPoolExecutor(1)
+    pool: Executor = ThreadPoolExecutor(1)
+    if workers > 1:  # processes that start afresh, because onnxruntime's threads do not survive a fork
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_leave_signals_to_the_parent)
     try:
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-def _process_pool(workers: int) -> ProcessPoolExecutor:
-    """Return processes that start afresh, because onnxruntime's threads do not survive a fork."""
-    return ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_leave_signals_to_the_parent)
 
 
 def _leave_signals_to_the_parent() -> None:

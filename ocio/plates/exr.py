@@ -81,14 +81,11 @@ def linear_header(
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
+        elif isinstance(value, str):  # OpenImageIO takes nothing that is not Unicode
+            header.attribute(name, value.encode(errors="replace").decode())
         else:
-            header.attribute(name, _text(value))
+            header.attribute(name, value)
     return header
-
-
-def _text(value: Any) -> Any:
-    """Return a text without what is not Unicode in it, which OpenImageIO does not take; any other value as it is."""
-    return value.encode(errors="replace").decode() if isinstance(value, str) else value
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:
@@ -122,10 +119,8 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
 def _is_whole(path: Path, header: Any) -> bool:
     """Return whether the chunks of a file fill it without a gap: OpenEXR reports no error of its last writes.
 
-    An OpenEXR file of one part is its header, a table with the place of each chunk, and the chunks. With zips
-    compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table last, over
-    zeros. Only the leaders of the chunks are read, and the data of the last one, whose checksum zlib verifies.
-
+    With zips compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table
+    of their places last, over zeros. Only the leaders are read, and the last data, whose checksum zlib verifies.
     Source: "OpenEXR File Layout", sections "Header", "Chunk Offset Table" and "Chunk Layout".
     """
     try:

@@ -73,11 +73,6 @@ class FirstFrame:
     path: Path
     frame: EncodedFrame
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """Its width and height in pixels."""
-        return self.frame.header.width, self.frame.header.height
-
 
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
     """Return the first frame that can be read; None if all fail, each with an error of its own."""
@@ -96,10 +91,8 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
     """Return the encoded samples of one frame: of a file that `read_photo` can read, or of OpenEXR with encoded values.
 
     `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated` says
-    whether the samples are multiplied by alpha, and so are divided by it; by default as the file says.
-
-    Raise a PhotoError or PlateError if the file is damaged, too large, of another format, scene-linear already, or
-    OpenEXR that does not state its encoding.
+    whether the samples are multiplied by alpha, and so are divided by it; by default as the file says. Raise a
+    PhotoError or PlateError if the file is damaged, too large, of another format, or may be scene-linear already.
     """
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)

@@ -19,9 +19,8 @@ MAX_FRAMES = 1_000_000
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     """Return the frame numbers of a specification, ascending and each once.
 
-    They are numbers, or a text of numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2"
-    (every second), "1,5,9", "-3--1", also backwards. Raise a PlateError if it is malformed, holds parts of frames, or
-    there are more than `MAX_FRAMES` frames.
+    They are numbers, or a text as Fileseq reads it: "1001-1100", "1-10x2" (every second), "1,5,9", "-3--1", also
+    backwards. Raise a PlateError if it is malformed, holds parts of frames, or more than `MAX_FRAMES` frames.
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))

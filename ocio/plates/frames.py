@@ -42,11 +42,9 @@ class FrameSequence:
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
     """Return the files of a single file's name, of a pattern (`FramePattern.parse`), or of a folder with one sequence.
 
-    An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`. `frames`, as
-    in `parse_frames`, are by default all existing ones.
-
-    Raise a PlateError if there are none, `frames` is malformed or comes with a single file, or a folder holds several
-    sequences or none.
+    An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`. Raise a
+    PlateError if there are no `frames`, they are malformed or come with a single file, or the folder has other
+    sequences.
     """
     path = Path(pattern)
     kind = _kind(path)

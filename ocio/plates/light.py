@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.photograph.image_io import oiio_message
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.response.curve import ResponseCurve
 
-from ..errors import PlateError
-from ..luts.exposure import anchored_exposure
+from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ..errors import LutError, PlateError
 from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
@@ -39,7 +41,7 @@ class PlateLight:
     space: LinearSpace  # of the linear values
 
     @classmethod
-    def of(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
+    def from_tags(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
         """Return the light of a plate with these tags; raises as `anchored_exposure` and `linear_space`."""
         plate = plate_primaries(tags, options.primaries)
         stops = anchored_exposure(lut, gray=options.gray, stops=options.exposure)
@@ -62,6 +64,28 @@ class PlateLight:
             PRIMARIES_SOURCE: self.plate.source,
         }
         return {name: value for name, value in attributes.items() if value not in ("", ())}
+
+
+def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
+    """Return the stops to add after the inverse response, which leaves the exposure open (Eq. 31 of docs/METHOD.md).
+
+    `gray` is the encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear
+    0.18; by default brightness 1 becomes 1. `stops` are added. `response` may be a LUT of the inverse. Raise a LutError
+    if the gray is black.
+    """
+    if gray is None:
+        return stops
+    irradiance = linear_gray(response, gray)
+    if irradiance <= 0:
+        raise LutError("gray_is_black", gray=gray)
+    return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
+
+
+def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS) -> float:
+    """Return the linear value of an encoded brightness, by default that at which cameras place 18 % gray."""
+    if isinstance(response, ResponseCurve):
+        return float(response.inverse(gray))
+    return float(response.channels[len(response.channels) // 2].apply(gray))
 
 
 def check_finished(

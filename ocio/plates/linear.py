@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +28,9 @@ from .frame_numbers import format_frames
 from .frame_pattern import FramePattern
 from .frames import FrameSequence
 from .light import PlateLight, check_finished
-from .parallel import finished
 from .primaries import check_same_primaries, plate_primaries
+
+Name = TypeVar("Name")
 
 #: Frames linearized at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8
@@ -80,31 +82,25 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    `targets`, one a frame, come from `linear_targets`; their folder must exist. Gray becomes RGB. Alpha is kept: the
-    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires of
-    coverage. Pixels are upright where the reader turns them. The matrix leads from the plate's primaries to the space
-    asked for; negative values stay. The output is compressed with zips and has the same bytes in every run.
+    Gray becomes RGB. The color is divided by alpha where the file stores the product, and multiplied by it after the
+    LUT, as OpenEXR requires of coverage. Negative values stay. The output has the same bytes in every run.
 
-    A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
-    unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure, space or
-    depth is refused then. A frame that another process finishes meanwhile is left alone too, and checked in the same
-    way.
+    A target that exists is whole, and is left alone unless `overwrite` is set: the same call resumes an interrupted
+    one, or is refused for another LUT, exposure, space or depth. A frame that another process finishes meanwhile is
+    checked, too.
 
-    Missing frames are only reported, and a frame that fails does not stop the others. `workers` frames, by default one
-    a core, up to `MAX_WORKERS`, are in memory. `progress` is called in this thread with the number of finished (and
-    skipped) frames, and of all. An exception from it ends the run after the frames that have begun.
-
-    Raise a CRFNetError before any frame is written if an option is out of range, the output does not fit the depth, or
-    finished frames differ; at the end if frames failed: it names them, and holds the first reason.
+    A frame that fails does not stop the others. `workers` frames, by default one a core, up to `MAX_WORKERS`, are in
+    memory. `progress` counts finished and skipped frames, in this thread. Raise a CRFNetError before any frame is
+    written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if options.is_encoded and isinstance(sequence, FrameSequence):
         sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
-    light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
+    light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    sizes = {targets[first.position]: first.size} if first else {}
+    sizes = {targets[first.position]: (first.frame.header.width, first.frame.header.height)} if first else {}
     check_finished(skipped, light, options.depth, sizes=sizes)
     left_alone = set(skipped)
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
@@ -190,6 +186,34 @@ class _Conversion:
         peak = 0.0 if frame.alpha is None else float(np.abs(frame.alpha).max())
         if peak > float(np.finfo(SAMPLE_TYPES[self.options.depth]).max):
             raise PlateError("exceeds_half", peak=peak)
+
+
+def finished(
+    jobs: Iterable[tuple[Name, Callable[[], None]]], workers: int, *, waiting: int = 2
+) -> Generator[tuple[Name, Future[None]]]:
+    """Yield named jobs as they finish, in threads.
+
+    Jobs are taken in this thread, one at a time, while fewer than `workers` run and `waiting` wait, so that no thread
+    waits for the next one. Close the iterator to end early: jobs that have begun are finished, the others dropped.
+    """
+    pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
+    running: dict[Future[None], Name] = {}
+    try:
+        for name, job in jobs:
+            running[pool.submit(job)] = name
+            if len(running) >= workers + waiting:
+                yield from _ended(running)
+        while running:
+            yield from _ended(running)
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _ended(running: dict[Future[None], Name]) -> Iterator[tuple[Name, Future[None]]]:
+    """Wait until a job ends; yield it, and others that have ended, in the order of their beginning."""
+    done = wait(running, return_when=FIRST_COMPLETED).done
+    for future in [future for future in running if future in done]:
+        yield running.pop(future), future
 
 
 def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:

@@ -104,11 +104,10 @@ class LinearSpace:
 
 
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
-    """Return the space of a plate's linear values; `output` is one of `TARGETS`.
+    """Return the space of a plate's linear values; `output` is one of `TARGETS`. Unknown primaries stay as they are.
 
     The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
-    back. A plate of unknown primaries is left as it is, and its space is unknown. Raise a PlateError if there is no
-    such space, or unknown primaries are to be converted to ACES.
+    back. Raise a PlateError if there is no such space, or unknown primaries are to be converted to ACES.
     """
     if output not in TARGETS:
         raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))

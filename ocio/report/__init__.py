@@ -3,24 +3,20 @@
 facts        photographs and errors in words, and the provenance that LUT files carry
 words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
-cameras      stored cameras in words and as JSON
 calibration  a measured response in words, as JSON and as provenance; pairs the same of raw files
 sheet        the picture of an estimate; calibration_sheet of a measured response: both need matplotlib
 """
 
 from . import pairs  # noqa: F401  adds its kind to `calibration`
 from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines
-from .cameras import camera_line, camera_summary, offer_lines
-from .documents import estimate_document, lut_document, model_document, plate_document
-from .facts import PhotoFacts, Phrases, basis, provenance
+from .documents import camera_summary, estimate_document, lut_document, plate_document
+from .facts import PhotoFacts, Phrases, provenance
 from .words import (
-    REMEDIES,
-    VERDICTS,
+    camera_line,
     file_lines,
     light_lines,
     lut_lines,
-    model_lines,
-    oiiotool_lines,
+    offer_lines,
     plate_lines,
     result_line,
     source_line,
@@ -29,11 +25,8 @@ from .words import (
 )
 
 __all__ = [
-    "REMEDIES",
-    "VERDICTS",
     "PhotoFacts",
     "Phrases",
-    "basis",
     "calibration_document",
     "calibration_lines",
     "calibration_provenance",
@@ -45,10 +38,7 @@ __all__ = [
     "light_lines",
     "lut_document",
     "lut_lines",
-    "model_document",
-    "model_lines",
     "offer_lines",
-    "oiiotool_lines",
     "plate_document",
     "plate_lines",
     "provenance",

@@ -1,22 +1,21 @@
-"""Estimates, plates, LUTs and models as documents: mappings ready for JSON, and their text."""
+"""Estimates, plates and LUTs as documents: mappings ready for JSON."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.network import ModelConfig
+from crfnet_core.library import Camera
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ..luts.exposure import linear_gray
 from ..luts.response import ResponseFile
 from ..output_files import OutputFiles
-from ..plates.light import PlateLight
+from ..plates.light import PlateLight, linear_gray
 from ..plates.linear import PlateReport
 from .facts import PhotoFacts
 
@@ -74,9 +73,10 @@ def lut_document(response: ResponseFile) -> dict[str, Any]:
     }
 
 
-def model_document(config: ModelConfig) -> dict[str, Any]:
-    """Return what a model's configuration says, ready for JSON."""
-    return {"kind": "model", **dataclasses.asdict(config)}
+def camera_summary(camera: Camera) -> dict[str, Any]:
+    """Return a camera in short, ready for JSON."""
+    settings = asdict(camera.settings) | {"iso": list(camera.settings.iso)}
+    return {"name": camera.name, **settings, "basis": camera.basis}
 
 
 def _light_document(light: PlateLight) -> dict[str, Any]:

@@ -69,7 +69,8 @@ def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *,
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
         before, after = _picture_axes(figure, side_by_side=preview.shape[0] >= preview.shape[1])
         _draw_photograph(before, preview, estimate, stride)
-        _draw_linear(after, preview, estimate.curve)
+        linear = srgb_encode(estimate.curve.inverse(preview)).astype(np.float32)
+        _show(after, linear, 1, "Linear plate, in an sRGB view")
 
 
 @contextmanager
@@ -151,11 +152,6 @@ def _outline(window: Window, *, is_kept: bool, width: float, color: str) -> Rect
     return Rectangle(
         corner, window.extent, window.extent, fill=False, linewidth=width, linestyle=style, edgecolor=color
     )
-
-
-def _draw_linear(axes: Axes, preview: Float32Array, curve: ResponseCurve) -> None:
-    """Show the linear plate as on an sRGB display."""
-    _show(axes, srgb_encode(curve.inverse(preview)).astype(np.float32), 1, "Linear plate, in an sRGB view")
 
 
 def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:

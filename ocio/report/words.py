@@ -1,4 +1,4 @@
-"""Estimates, plates, LUTs and models in words: the lines that the command and the add-on show."""
+"""Estimates, plates and LUTs in words: the lines that the command and the add-on show."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
+from crfnet_core.library import Camera
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
 
@@ -46,9 +47,10 @@ def source_line(estimate: ResponseEstimate) -> str:
 
 def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
-    kind, rests_on = estimate.likely_kind, basis(estimate)
+    kind, rests_on, advice = estimate.likely_kind, basis(estimate), verdict_advice(estimate, phrases)
+    verdict = f"{VERDICTS[Verdict.DO_NOT_TRUST]}: {advice}" if advice else VERDICTS[estimate.verdict]
     return [
-        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, phrases)}.",
+        f"The {'response' if estimate.camera else 'estimate'} is {verdict}.",
         _expectation(estimate, phrases),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
@@ -77,39 +79,6 @@ def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty a
     named = [(", ".join(path.name for path in paths if path), meaning) for paths, meaning in rows]
     width = min(48, max(len(names) for names, _ in named))
     return [f"  {names:<{width}}  {meaning}" for names, meaning in named if names]
-
-
-def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any], *, alpha: str = "") -> list[str]:
-    """Return two command lines by which oiiotool makes the linear plate: with the LUT and with the config.
-
-    Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither;
-    where the linear EXR keeps primaries that the config has no linear space of, it says that the config converts them.
-    `alpha` is `FileMetadata.alpha` of the photograph: the LUT takes colors that are not multiplied by it.
-    """
-    primaries, linear = document["primaries"], document["output_space"]
-    target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
-    is_known = "white" in primaries
-    is_converted = is_known and linear["name"] != f"linear {primaries['name']}"
-    is_kept = is_known and not is_converted and linear["interop_id"] == "unknown"
-    is_more = is_converted or document["exposure"]["stops"] != 0
-    lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.lut, files.config, photo))
-    space = shlex.quote(files.color_space)
-    oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
-    # Straight colors are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
-    oiiotool += " --no-autopremult" * (alpha == "straight")
-    divide, multiply = ":unpremult=1" * (alpha == "multiplied"), " --premult" * (alpha == "straight")
-    end = f"{multiply} -d half -o linear.exr"
-    return [
-        f"{oiiotool} {plate} --ociofiletransform{divide} {lut}{end}",
-        f"{oiiotool} --colorconfig {config} {plate} --colorconvert{divide} {space} {target}{end}",
-        *([f"(The LUT alone adds no exposure, and does not convert {primaries['name']}.)"] * is_more),
-        *(["(The config converts to linear Rec.709; the linear EXR keeps the plate's primaries.)"] * is_kept),
-    ]
-
-
-def _as_argument(path: Path) -> str:
-    """Return a file's name, which oiiotool must not take for an option."""
-    return f"./{path}" if str(path).startswith("-") else str(path)
 
 
 def light_lines(document: Mapping[str, Any]) -> list[str]:
@@ -154,18 +123,19 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def model_lines(document: Mapping[str, Any]) -> list[str]:
-    """Return what a model's configuration says, from its `model_document`."""
-    left_out = ("kind", "name", "accuracy")
-    return [
-        f"{document['name']}: model",
-        *(f"  {key}: {_listed(value)}" for key, value in document.items() if key not in left_out),
-        *(
-            f"  accuracy, {protocol}, {figure}: {value}"
-            for protocol, figures in document["accuracy"].items()
-            for figure, value in figures.items()
-        ),
-    ]
+def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
+    """Return one line that offers stored cameras of a photograph's make and model; nothing without any."""
+    if not offers:
+        return []
+    named = " or ".join(f"--camera {shlex.quote(offer.name)} ({offer.basis})" for offer in offers)
+    return [f"A response of this camera is known; to use it, add {named}."]
+
+
+def camera_line(camera: Camera) -> str:
+    """Return a camera in one line, for lists; its make and model where its name does not begin with them."""
+    model = camera.settings.camera
+    is_named = camera.name.casefold().startswith(model.casefold())
+    return f"{camera.name}: {camera.basis if is_named else f'{model}; {camera.basis}'}"
 
 
 def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
@@ -180,12 +150,6 @@ def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> st
     is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
     advice = remedies[0] if remedies else f"give the file that the camera wrote{phrases.calibrate}"
     return advice + ("" if is_known or is_stored else phrases.state_device)
-
-
-def _verdict_words(estimate: ResponseEstimate, phrases: Phrases) -> str:
-    """Return the verdict with the advice about it."""
-    advice = verdict_advice(estimate, phrases)
-    return f"{VERDICTS[Verdict.DO_NOT_TRUST]}: {advice}" if advice else VERDICTS[estimate.verdict]
 
 
 def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:
@@ -213,8 +177,3 @@ def _exposure_line(exposure: Mapping[str, Any]) -> str:
 def _first_and_last(paths: Sequence[Path]) -> str:
     """Return a path, or the number of several paths and the first and the last of them."""
     return str(paths[0]) if len(paths) == 1 else f"{len(paths)} frames, {paths[0]} to {paths[-1].name}"
-
-
-def _listed(value: object) -> str:
-    """Return a value as text, a tuple as its elements with commas between."""
-    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)

@@ -22,7 +22,7 @@ print(*sys.modules)
 """
 
 #: What only the command needs, or only some photographs: the zips of the add-on may lack it.
-OPTIONAL = ("av", "distributed", "fileseq", "matplotlib", "pi_heif", "shtab", "tqdm")
+OPTIONAL = ("av", "distributed", "fileseq", "matplotlib", "pi_heif", "tqdm")
 
 BLOCKED = f"""
 import sys

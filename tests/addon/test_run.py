@@ -12,7 +12,7 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet.errors import LutError, PlateError
-from crfnet.pipeline import estimates, loading
+from crfnet.pipeline import estimates
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
 from crfnet_core.errors import ModelError
 from crfnet_core.network import ResponseNetwork
@@ -96,7 +96,7 @@ def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, 
 
 def test_the_network_is_loaded_once(make_job, calls):
     loads = calls(ResponseNetwork, "load")
-    loading._network.cache_clear()
+    estimates._network.cache_clear()
     for _ in range(3):
         run(make_job(mode=ApplyMode.NODES))
     assert len(loads) == 1
@@ -173,4 +173,4 @@ def test_a_missing_plate_and_a_missing_model_are_told(make_job, tmp_path, plate_
     with refused(PlateError, "no_such_plate"):
         run(job)
     with refused(ModelError, "unreadable_model"):
-        loading.load_network(type(job.estimation.options)(model=tmp_path))
+        estimates.load_network(type(job.estimation.options)(model=tmp_path))

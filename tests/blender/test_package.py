@@ -53,7 +53,7 @@ print(bpy.ops.crf.estimate_response(image=image.name))
 import crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO
 packages = (crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO)
 estimate = crfnet_core.estimate_response(crfnet_core.read_photo(plate), network=crfnet_core.ResponseNetwork.load())
-stray = sorted({"shtab", "tqdm", "matplotlib", "google", "flatbuffers", "pi_heif"} & set(sys.modules))
+stray = sorted({"tqdm", "matplotlib", "google", "flatbuffers", "pi_heif"} & set(sys.modules))
 codes = crfnet_core.photograph.image_io.read_codes(heic).codes
 import pi_heif, PIL
 packages += (pi_heif, PIL)

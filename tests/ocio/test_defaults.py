@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from crfnet import defaults, report
+from crfnet import defaults
 from crfnet.plates.exr import SAMPLE_TYPES
+from crfnet.report import words
 from crfnet_core.photograph.metadata import Device
 from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packaged_priors, verdict
 from crfnet_core.response.metrics import brightness_percent
@@ -18,8 +19,8 @@ def test_every_depth_has_a_sample_type():
 
 
 def test_every_verdict_has_words():
-    assert set(report.VERDICTS) == set(Verdict)
-    assert set(report.REMEDIES) == set(UNUSUAL)
+    assert set(words.VERDICTS) == set(Verdict)
+    assert set(words.REMEDIES) == set(UNUSUAL)
 
 
 def test_the_priors_are_the_packaged_ones():

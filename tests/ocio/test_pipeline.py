@@ -107,7 +107,7 @@ class TestExposure:
 
 
 def light_of(lut, **options):
-    return PlateLight.of(ColorTags(), lut, PlateOptions(**options))
+    return PlateLight.from_tags(ColorTags(), lut, PlateOptions(**options))
 
 
 def bake(sequence, targets, lut, options, *, progress=None):

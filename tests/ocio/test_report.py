@@ -6,9 +6,10 @@ import math
 import pytest
 
 from crfnet import report
+from crfnet.report import facts, words
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ModelConfig, ResponseNetwork
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
 from crfnet_core.posterior import Family, Verdict
@@ -104,10 +105,10 @@ def test_the_likely_kind(estimate, families, words):
     assert str(estimate(families=families).likely_kind) == words
 
 
-@pytest.mark.parametrize("family", report.REMEDIES)
+@pytest.mark.parametrize("family", words.REMEDIES)
 def test_the_remedy_follows_the_kind(estimate, family):
     first = report.verdict_lines(estimate(families={family: 1.0}, verdict=Verdict.DO_NOT_TRUST))[0]
-    assert first == f"The estimate is not to be trusted: {report.REMEDIES[family]}."
+    assert first == f"The estimate is not to be trusted: {words.REMEDIES[family]}."
 
 
 def test_of_a_cameras_photograph_its_own_file_or_a_measurement_helps(estimate):
@@ -118,13 +119,13 @@ def test_of_a_cameras_photograph_its_own_file_or_a_measurement_helps(estimate):
 def test_who_says_what_took_the_photograph(estimate):
     unnamed = file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400))
     told = with_stated_device(unnamed, Device.PHONE)
-    assert report.basis(estimate(origins=(told,))) == (
+    assert facts.basis(estimate(origins=(told,))) == (
         "prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it: it has"
         " 600 x 400 pixels"
     )
     bare = with_stated_device(file_origin(FileMetadata()), Device.COMPACT)
-    assert report.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
-    assert report.basis(estimate(origins=())) == "prior: camera; no file metadata used"
+    assert facts.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
+    assert facts.basis(estimate(origins=())) == "prior: camera; no file metadata used"
 
 
 def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
@@ -146,12 +147,3 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
     ]
     assert report.provenance(stored)[-1] == "Verdict: good, expected error 3.9 % of the brightness range (E_est 1.25)"
     assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")
-
-
-def test_a_model_is_told_by_every_figure(fixed_model):
-    config = ModelConfig.read(fixed_model / "model.json")
-    document = report.model_document(dataclasses.replace(config, accuracy={"P0": {"mean": 1.2, "median": 1.1}}))
-    lines = report.model_lines(document)
-    assert lines[0] == "fixed: model"
-    assert lines[-2:] == ["  accuracy, P0, mean: 1.2", "  accuracy, P0, median: 1.1"]
-    assert "  output_names: locations, factors, log_odds" in lines

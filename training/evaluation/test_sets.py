@@ -16,7 +16,7 @@ from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
-from training.data.linear_files import linear_scene
+from training.data.linear_files import read_raw
 from training.data.scenes import BAND, Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
 from training.evaluation.baselines import constant_curves
@@ -48,7 +48,8 @@ class SceneFile:
     def read(self) -> Scene:
         """Return the scene."""
         if self.kind == RAW:
-            return Scene.scaled(self.name, linear_scene(self.path, scale=1)[0].astype(np.float32), False)
+            light = np.divide(read_raw(self.path), 65535, dtype=np.float32)
+            return Scene.scaled(self.name, light.astype(np.float16).astype(np.float32), False)
         return read_light(self.path) if self.is_light else read_scene(self.path, self.kind == "panorama")
 
 

@@ -1,6 +1,6 @@
-"""The arguments of each subcommand of `crfnet`: parsed and refused without importing numpy, so that help is quick.
+"""The command line of `crfnet`: parsed and refused without importing numpy, so that help is quick.
 
-command_line   the parser of all of it
+command_line   every subcommand, its options and its examples
+calibrate      those of `crfnet calibrate`
 parts          options of several subcommands, and the types of their values
-the others     one subcommand each, its options and its examples
 """

@@ -6,14 +6,7 @@ import argparse
 
 from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
-from crfnet_core.library import (
-    Camera,
-    CameraLibrary,
-    camera_document,
-    camera_estimate,
-    find_camera,
-    read_calibration,
-)
+from crfnet_core.library import Camera, CameraLibrary, camera_document, camera_estimate, find_camera, read_calibration
 
 from ... import pipeline, report
 from ...luts.files import write_lut

@@ -1,4 +1,4 @@
-"""`--each` of `crfnet estimate` and `crfnet linearize`: many photographs."""
+"""The options that `crfnet estimate` and `crfnet linearize` share, and `--each`: many photographs."""
 
 from __future__ import annotations
 
@@ -7,11 +7,38 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
+from crfnet_core.estimate.options import AnalysisOptions
+
 from ... import pipeline
 from ...errors import PlateError
+from ...options import EstimateOptions, PlateOptions, stated_device
 from ...pipeline.batch import Batch
 from ..remedies import CommandError
 from .printing import print_result, progress_bar
+
+
+def estimate_options(arguments: argparse.Namespace) -> EstimateOptions:
+    """Return how responses are estimated."""
+    device = stated_device(arguments.taken_with)
+    return EstimateOptions(
+        model=arguments.model,
+        prior=arguments.prior,
+        camera=arguments.camera,
+        analysis=AnalysisOptions(use_metadata=not arguments.ignore_metadata, device=device),
+    )
+
+
+def plate_options(arguments: argparse.Namespace) -> PlateOptions:
+    """Return how linear plates are written."""
+    return PlateOptions(
+        depth=arguments.depth,
+        exposure=arguments.exposure.stops,
+        gray=arguments.exposure.gray,
+        primaries=arguments.primaries,
+        output_space=arguments.output_space,
+        overwrite=arguments.overwrite,
+        is_encoded=getattr(arguments, "encoded", False),
+    )
 
 
 def check_each(arguments: argparse.Namespace) -> None:

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 from crfnet_core.posterior import Verdict
 
 from ... import pipeline, report
-from ...movies.source import movie_of
-from ...options import OutputOptions, PlateOptions
-from ...output_files import OutputFiles, plain_stem
+from ...options import OutputOptions
 from ..arguments.parts import NOT_TRUSTED
-from .each import check_each, run_each
-from .options import estimate_options, plate_arguments, plate_options
+from .each import check_each, estimate_options, plate_options, run_each
 from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
@@ -56,7 +51,7 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
 
 
 def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
-    """Return what was read, estimated and written, and how to use it, for people."""
+    """Return what was read, estimated and written, for people."""
     return [
         *estimated.movies,
         *(str(photograph.report) for photograph in estimated.photographs),
@@ -67,25 +62,4 @@ def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: 
         f"Written to {plan.files.report.parent}:",
         *report.file_lines(plan.files),
         *lost_lines(plan),
-        "",
-        *_usage_lines(estimated, document, plan),
     ]
-
-
-def _usage_lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
-    """Return the command lines that make linear plates of the first photograph, or of all frames of a movie."""
-    path, first = estimated.paths[0], estimated.firsts[0]
-    if movie_of(first.plate):
-        title = f"The linear plate is frame {first.plate.numbers[0]}; the whole movie, with the LUT:"
-        lines = [_linearize_line(path, plan.files, plan.plates)]
-    else:
-        title = "The linear plate in oiiotool, with the LUT or the config:"
-        lines = report.oiiotool_lines(path, plan.files, document, alpha=first.alpha)
-    return [title, *(f"  {line}" for line in lines)]
-
-
-def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:
-    """Return the command line by which all frames of a movie become linear plates like the one that was written."""
-    frames = Path("linear", f"{plain_stem(movie)}.%04d.exr")
-    command = ["crfnet", "linearize", str(movie), "--lut", str(files.lut), "--out", str(frames)]
-    return shlex.join([*command, *plate_arguments(plates)])

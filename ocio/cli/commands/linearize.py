@@ -18,8 +18,7 @@ from ...plates.frame_pattern import FramePattern
 from ...plates.linear import linear_targets, linearize_plates
 from ..arguments.parts import NOT_TRUSTED
 from ..remedies import CommandError
-from .each import check_each, run_each
-from .options import estimate_options, plate_options
+from .each import check_each, estimate_options, plate_options, run_each
 from .printing import print_result, progress_bar
 
 

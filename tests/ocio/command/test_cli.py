@@ -2,18 +2,14 @@
 
 import io
 import json
-import shutil
-import subprocess
 import sys
 
 import pytest
 
-from crfnet.cli.arguments.completion import SHELLS
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS
-from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 
-COMMANDS = ("estimate", "linearize", "info", "completion")
+COMMANDS = ("estimate", "linearize", "info")
 
 
 class TestHelp:
@@ -25,13 +21,6 @@ class TestHelp:
 
     def test_version(self, crfnet):
         assert crfnet("--version").out.startswith("crfnet 0.")
-
-    @pytest.mark.parametrize("shell", SHELLS)
-    def test_the_shell_accepts_the_completion(self, crfnet, shell):
-        script = crfnet("completion", shell).out
-        assert "linearize" in script
-        if shutil.which(shell):
-            subprocess.run([shell, "-n"], input=script, text=True, check=True)
 
 
 class TestInfo:
@@ -47,17 +36,6 @@ class TestInfo:
         *_, trust, primaries = document["provenance"]
         assert "prior: camera; file metadata used: " in trust
         assert primaries.startswith("Primaries: Rec.709")
-
-    @pytest.mark.parametrize("part", ["", "model.json", "model.onnx"])
-    def test_of_a_model(self, crfnet, fixed_model, part):
-        out = crfnet("info", fixed_model / part).out
-        assert "fixed: model" in out
-        assert "sha256: " in out
-        assert "uncertainty" not in out
-
-    def test_of_a_model_as_json(self, crfnet, fixed_model):
-        document = json.loads(crfnet("info", fixed_model, "--json").out)
-        assert (document["kind"], document["name"], document["components"]) == ("model", "fixed", EVIDENCE_WEIGHTS)
 
 
 class TestProgressBar:

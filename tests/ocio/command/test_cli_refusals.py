@@ -69,12 +69,10 @@ BAD = [
     ("not_a_folder", "linearize plate.jpg --lut good.spi1d --out file/a.exr"),
     ("target_is_plate", "linearize linear.exr --lut good.spi1d --out linear.exr --overwrite"),
     ("lut_not_increasing", "info bad.spi1d"),
-    ("neither_lut_nor_model", "info plate.jpg"),
-    ("neither_lut_nor_model", "info none"),
-    ("unreadable_model", "info ."),
+    ("lut_suffix", "info plate.jpg"),
+    ("lut_unreadable", "info none"),
     ("usage", ""),
     ("usage", "nonsense"),
-    ("usage", "completion dos"),
 ]
 
 

@@ -63,7 +63,7 @@ def test_the_texts_are_the_expected_ones(tmp_path):
 
 
 def test_a_cube_leaves_the_usual_domain_out():
-    assert WRITERS[".cube"].text(Lut1D([0, 1])) == "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"
+    assert WRITERS[".cube"](Lut1D([0, 1])) == "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"
 
 
 def test_the_identity_depends_on_the_table_and_the_domain_alone():

@@ -5,8 +5,7 @@ import pytest
 
 from crfnet.defaults import FRAMES_ANALYZED
 from crfnet.movies.frames import MovieFrames
-from crfnet.movies.selection import chosen_photos
-from crfnet.movies.source import file_source
+from crfnet.movies.source import chosen_photos, file_source
 from crfnet.options import EstimateOptions
 from crfnet.pipeline import estimate_files
 from crfnet_core.errors import PhotoError

@@ -5,7 +5,7 @@ from contextlib import closing
 
 import pytest
 
-from crfnet.plates.parallel import finished
+from crfnet.plates.linear import finished
 
 
 @pytest.mark.parametrize("workers", [1, 3])
