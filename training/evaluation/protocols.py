@@ -73,10 +73,7 @@ class Settings:
 
 @dataclass
 class Evaluation:
-    """One evaluation: call `run`.
-
-    settings: models, protocols, numbers
-    """
+    """One evaluation: call `run`."""
 
     settings: Settings
     test_set: TestSet
