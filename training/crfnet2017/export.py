@@ -17,7 +17,6 @@ from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.train import VALIDATION_BATCH, validation_windows
 from training.crfnet2017.windows import Windows, read_splits
-from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
 from training.export.onnx_graph import WINDOWED, rounded
 
@@ -74,17 +73,6 @@ def fold_normalization(network: CRFNet) -> CRFNet:
     return network
 
 
-def cost_of_rounding(network: ShippedCRFNet) -> float:
-    """Return the largest change of a weight (units of E_est) on the golden windows when the network is `rounded`.
-
-    The network stays rounded.
-    """
-    windows = torch.from_numpy(golden_windows())
-    with torch.inference_mode():
-        before = network(windows)[0]
-        return float((rounded(network)(windows)[0] - before).abs().max())
-
-
 def fit_worth(network: ShippedCRFNet, validation: Windows, responses: Tensor) -> float:
     """Fit the evidence of a network to validation windows, and return its mean distance from their true weights."""
     known = torch.from_numpy(EmorBasis.load().project(responses.double().numpy()))
@@ -100,8 +88,7 @@ def main() -> None:
     parser = export_options((__doc__ or "").splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
     options = parser.parse_args()
-    network = load_network(options.run)
-    print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
+    network = rounded(load_network(options.run))
     scenes = read_splits(options.data)["validation"]
     print(f"E_est of the validation windows: {fit_worth(network, validation_windows(scenes), scenes.curves):.3f}")
     write_model(network, WINDOWED, options)

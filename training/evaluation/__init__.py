@@ -8,5 +8,4 @@
 - `measure`: from photographs to rows of the table.
 - `report`: from rows to means, intervals, comparisons, and their report.
 - `protocols`: runs P0 to P6.
-- `recognition`: how often log footage and limited range are recognized.
 """

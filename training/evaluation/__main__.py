@@ -12,18 +12,17 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import replace
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from training.evaluation.models import Model
-from training.evaluation.plan import CONDITIONS
+from training.evaluation.plan import STRESS_PHOTOGRAPHS
 from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation, Settings
-from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, dorf_test_set
+from training.evaluation.test_sets import bundled_test_set, dorf_test_set
 
-#: The protocols of --quick, its photographs, and how many of these are under stress.
-QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "paper"), 40, 5
+#: The protocols of --quick, and the photographs of P0 and of the protocol paper.
+QUICK_PROTOCOLS, QUICK_COUNTS = ("p0", "paper"), (40, 5)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -39,13 +38,8 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--protocol", nargs="+", choices=PROTOCOLS, help="all that the models allow by default")
     command.add_argument("--photographs", type=int, help="the most photographs of P0 and P2 (all, or 40 with --quick)")
     command.add_argument("--stressed", type=int, help="photographs of the protocol paper (200, or 5 with --quick)")
-    command.add_argument(
-        "--condition", nargs="+", choices=[each.name for each in CONDITIONS], help="conditions of the protocol paper"
-    )
     command.add_argument("--workers", type=int, default=2, help="processes")
-    command.add_argument("--seed", type=int, default=2017)
     command.add_argument("--quick", action="store_true", help="bundled lights and formulas instead of the data")
-    command.add_argument("--lights", type=Path, default=LIGHTS_FOLDER, help="folder of the lights of --quick")
     return command
 
 
@@ -59,28 +53,20 @@ def parsed(arguments: list[str] | None = None) -> Evaluation:
         raise CRFNetError("there is nothing to measure on; give --data, or --quick for the bundled lights")
     if options.workers < 1:
         raise CRFNetError(f"the number of workers must be 1 or more, found {options.workers}; correct --workers")
-    test_set = bundled_test_set(options.lights) if options.quick else dorf_test_set(options.data)
+    test_set = bundled_test_set() if options.quick else dorf_test_set(options.data)
     models = tuple(Model.find(name) for name in options.model)
     possible = tuple(
         name for name in PROTOCOLS if name != "p2" or all(each.lacks(test_set.held_out) for each in models)
     )
+    photographs, stressed = QUICK_COUNTS if options.quick else (ALL_PHOTOGRAPHS, STRESS_PHOTOGRAPHS)
     settings = Settings(
         out=options.out,
         models=models,
         protocols=tuple(options.protocol or (QUICK_PROTOCOLS if options.quick else possible)),
-        photographs=QUICK_PHOTOGRAPHS if options.quick else ALL_PHOTOGRAPHS,
+        photographs=photographs if options.photographs is None else options.photographs,
         workers=options.workers,
-        seed=options.seed,
+        stress_photographs=stressed if options.stressed is None else options.stressed,
     )
-    if options.quick:
-        settings = replace(settings, stress_photographs=QUICK_STRESS_PHOTOGRAPHS)
-    if options.condition:
-        chosen = {CONDITIONS[0].name, *options.condition}
-        settings = replace(settings, conditions=tuple(one for one in CONDITIONS if one.name in chosen))
-    if options.photographs is not None:
-        settings = replace(settings, photographs=options.photographs)
-    if options.stressed is not None:
-        settings = replace(settings, stress_photographs=options.stressed)
     return Evaluation(settings, test_set)
 
 

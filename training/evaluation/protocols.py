@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
+from crfnet_core.files import atomic_write_text
 from training.data.real.photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import GAMMA
@@ -27,7 +28,7 @@ from training.evaluation.plan import (
 )
 from training.evaluation.report import sums
 from training.evaluation.report.document import Report, ReportRow, write_report
-from training.evaluation.report.markdown import write_markdown
+from training.evaluation.report.markdown import report_text
 from training.evaluation.report.summary import rounded
 from training.evaluation.test_sets import TestSet
 from training.synthesis.unusual import UnusualKind
@@ -72,10 +73,7 @@ class Settings:
 
 @dataclass
 class Evaluation:
-    """One evaluation: call `run`.
-
-    settings: models, protocols, numbers
-    """
+    """One evaluation: call `run`."""
 
     settings: Settings
     test_set: TestSet
@@ -104,7 +102,7 @@ class Evaluation:
             rows=[rounded(row) for row in rows],
         )
         write_report(self.settings.out / "report.json", report)
-        write_markdown(self.settings.out / "report.md", report)
+        atomic_write_text(self.settings.out / "report.md", report_text(report), overwrite=True)
         return report
 
     def _check(self) -> None:
@@ -200,7 +198,6 @@ class Evaluation:
         for protocol, cases in alone.items():
             self._with_uncertainty[protocol] = sums.without_caution(cases), ways
             yield from sums.real_rows(protocol, cases, ways, seed=seed)
-        yield from sums.origin_rows(protocol, cases, seed=seed)
         yield from sums.body_rows(protocol, cases, ways)
         yield from sums.pooled_rows(protocol + POOLED, together[0], list(self._models), seed=seed)
 

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import norm
 
-from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
@@ -110,16 +109,14 @@ def dorf_test_set(data: Path) -> TestSet:
     return TestSet(scenes, curves, tuple(held_out), data, originals)
 
 
-def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:
+def bundled_test_set() -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
-    scenes = tuple(SceneFile(Path(light).stem, "panorama", lights / light, True) for light in LIGHTS)
+    scenes = tuple(SceneFile(Path(light).stem, "panorama", LIGHTS_FOLDER / light, True) for light in LIGHTS)
     return TestSet(scenes, np.stack(list(formula_curves().values())))
 
 
 def read_light(path: Path) -> Scene:
-    """Return the middle rows of a studio light, as of a panorama; raise CRFNetError if the file is absent."""
-    if not path.is_file():
-        raise CRFNetError(f"{path}: is absent; restore it from the repository")
+    """Return the middle rows of a studio light, as of a panorama."""
     pixels = read_scene(path, is_panorama=True).pixels
     low, high = (round(fraction * len(pixels)) for fraction in BAND)
     return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)

@@ -142,7 +142,6 @@ def test_the_command_line_chooses_what_is_measured(fixed_model, tmp_path):
         (["--quick", "--workers", "0"], "workers must be 1 or more"),
         (["--quick", "--protocol", "p4"], "p4 needs real photographs"),
         (["--quick", "--photographs", "0"], "photographs must be 1 or more"),
-        (["--quick", "--lights", "nowhere", "--workers", "1"], "restore it from the repository"),
         (["--quick", "--model", "nonesuch"], rf"nonesuch: not a model folder; .* one of .*{DEFAULT_MODEL.name}"),
     ],
 )

@@ -178,18 +178,6 @@ def test_the_mean_leaves_out_the_fold_and_counts_a_body_once(data):
     assert estimation_error(of_careful, ResponseCurve.gamma(np.mean(powers))) < 0.02  # camera and phone
 
 
-def test_p4_groups_by_the_origin_of_the_files(measured_once):
-    report = measured_once[1]
-    groups = [
-        {row["group"]: row["photographs"] for row in report.table(f"P4 both{caution} by file")}
-        for caution in ("", ", with caution,")
-    ]
-    assert groups == [
-        {"edited": 1, "no editor named": 2, "not known": 2, "not scaled": 3, "scaled": 2},
-        {"edited": 2, "no editor named": 2, "not known": 3, "not scaled": 4, "scaled": 3},
-    ]
-
-
 def test_without_the_folder_of_more_bodies_its_tables_are_absent(model, tmp_path, data):
     shutil.rmtree(data / "real_bodies")
     report = measured(model, tmp_path / "out", data)

@@ -143,8 +143,6 @@ def _row(
         "kind": photograph.kind,
         "grade": photograph.grade,
         "caution": photograph.caution,
-        "editing": photograph.editing.value,
-        "scaling": "scaled" if photograph.is_scaled else "not scaled",
         "true weights": first_weights(true),
     } | figures
 

@@ -27,13 +27,9 @@ def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
         if row := report.row(protocol, model):
             counts = {name: row[name] for name in ("photographs", "bodies") if name in row}
             own = {name: value(row[name]) for name in (*CARD_FIGURES, "PSNR of the mean")}
-            others = {name: report.row(protocol, name) for name in CARD_BASELINES}
-            own |= {
-                f"{error} {name}": value(other[f"{error} mean"])
-                for name, other in others.items()
-                for error in ERRORS
-                if other
-            }
+            for name in CARD_BASELINES:
+                if other := report.row(protocol, name):
+                    own |= {f"{error} {name}": value(other[f"{error} mean"]) for error in ERRORS}
             figures[protocol] = counts | dict(sorted(own.items())) | _stated(report, protocol, model)
     if row := report.row("P6", model):
         stripped = report.row("P6", f"{model}, without metadata")
@@ -67,15 +63,14 @@ def accuracy_table(figures: dict[str, dict[str, float]]) -> str:
 
 def bodies_table(report: Report, model: str) -> str:
     """Return the Markdown table of the bodies of P4; empty without P4."""
-    rows = [row for row in report.rows if row["table"].endswith(" by body") and row["estimator"] == model]
     lines = []
-    for row in rows:
-        others = [report.row(row["table"], name, row["group"]) for name in BODY_BASELINES]
-        cells = [f"{each[f'{error} mean']:.2f}" for error in ("E_est", "shape") for each in (row, *others)]
-        expected = f"{row['expected E_est mean']:.2f}"
-        lines.append([row["group"], row["grade"], str(row["photographs"]), *cells, expected])
-    header = [
-        f"{error}{name}" for error in ("E_est", "shape") for name in ("", *(f", {each}" for each in BODY_BASELINES))
-    ]
-    header = ["body (P4)", "grade", "photographs", *header, "expected E_est"]
+    for row in report.rows:
+        if row["table"].endswith(" by body") and row["estimator"] == model:
+            others = [report.row(row["table"], name, row["group"]) for name in BODY_BASELINES]
+            cells = [f"{each[f'{error} mean']:.2f}" for error in ("E_est", "shape") for each in (row, *others)]
+            expected = f"{row['expected E_est mean']:.2f}"
+            lines.append([row["group"], row["grade"], str(row["photographs"]), *cells, expected])
+    names = ["", *(f", {name}" for name in BODY_BASELINES)]
+    errors = [error + name for error in ("E_est", "shape") for name in names]
+    header = ["body (P4)", "grade", "photographs", *errors, "expected E_est"]
     return markdown_table(header, lines) if lines else ""

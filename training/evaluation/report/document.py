@@ -16,21 +16,16 @@ ReportRow = dict[str, Any]
 
 @dataclass(frozen=True)
 class Report:
-    """A whole evaluation.
-
-    settings: number of photographs, seed, and a hash of scenes and responses
-    models: name of a model -> SHA-256 of its graph
-    notes: reasons not to compare the figures with others; a whole evaluation of today's code has none
-    """
+    """A whole evaluation; `models` are name -> SHA-256 of the graph, `notes` reasons not to compare the figures."""
 
     settings: dict[str, Any]
     models: dict[str, str]
     notes: list[str]
     rows: list[ReportRow]
 
-    def table(self, name: str) -> list[ReportRow]:
-        """Return the rows of a table."""
-        return [row for row in self.rows if row["table"] == name]
+    def table(self, *names: str) -> list[ReportRow]:
+        """Return the rows of tables, one table after the other."""
+        return [row for name in names for row in self.rows if row["table"] == name]
 
     def row(self, table: str, estimator: str, group: str = "") -> ReportRow:
         """Return the row of an estimator, empty where there is none."""
@@ -44,10 +39,7 @@ def write_report(path: Path, report: Report) -> None:
 
 
 def read_report(path: Path) -> Report:
-    """Return the report that `write_report` wrote.
-
-    Raise CRFNetError if the file is another one.
-    """
+    """Return the report that `write_report` wrote; raise CRFNetError if the file is another one."""
     try:
         return Report(**json.loads(path.read_text()))
     except (ValueError, TypeError) as problem:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from crfnet_core.files import atomic_write_text
+from training.data.real.photographs import REAL, REAL_BODIES
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER
 from training.evaluation.report import paper
@@ -17,12 +16,7 @@ from training.evaluation.report.document import Report, ReportRow, value
 
 @dataclass(frozen=True)
 class Listed:
-    """A table with a row for each estimator.
-
-    tables: tables of the report
-    figures: head of a column -> figure
-    groups: the groups to show; all if empty
-    """
+    """A table with a row for each estimator; `figures` are head of a column -> figure, no `groups` show all."""
 
     tables: tuple[str, ...]
     figures: dict[str, str]
@@ -31,10 +25,7 @@ class Listed:
 
 @dataclass(frozen=True)
 class Crossed:
-    """A table with a row for each group, and a column for each estimator whose cells hold some figures.
-
-    With `has_ways` every way of asking a model has a column.
-    """
+    """A table with a row for each group, and a column for each estimator, with `has_ways` for each way of asking."""
 
     tables: tuple[str, ...]
     figures: tuple[str, ...] = ("E_est mean", "shape mean")
@@ -67,8 +58,6 @@ ERROR_FIGURES = {
     "shape": "shape mean",
 }
 
-MEANS = {"E_est": "E_est mean", "shape": "shape mean"}
-
 STATED = {
     "stated": "stated mean",
     "found": "error mean",
@@ -79,9 +68,6 @@ STATED = {
 
 #: The estimators that tables by group show beside the models.
 SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
-
-#: The folders of real photographs.
-FOLDERS = ("real", "real_bodies", "both")
 
 INTRODUCTION = """# How accurate the models are
 
@@ -124,7 +110,13 @@ SECTIONS = (
         " Photographs with caution (edited, very small, or poorly measured) count only where a table names them.",
         (
             Listed(("P4 both",), ERROR_FIGURES),
-            Crossed(tuple(f"P4 {folder}{caution}" for folder in FOLDERS for caution in ("", ", with caution"))),
+            Crossed(
+                tuple(
+                    f"P4 {folder}{caution}"
+                    for folder in (REAL, REAL_BODIES, "both")
+                    for caution in ("", ", with caution")
+                )
+            ),
             Crossed(("P4 both by kind",)),
         ),
     ),
@@ -136,7 +128,7 @@ SECTIONS = (
     Section(
         "P4: several photographs of one body",
         "Up to four photographs estimated together, and the same photographs one by one, with caution included.",
-        (Listed(("P4 both, pooled",), MEANS, ("4 photographs",)),),
+        (Listed(("P4 both, pooled",), {"E_est": "E_est mean", "shape": "shape mean"}, ("4 photographs",)),),
     ),
     Section(
         "P4: verdicts and weights",
@@ -162,11 +154,6 @@ SECTIONS = (
 )
 
 
-def write_markdown(path: Path, report: Report) -> None:
-    """Write report.md."""
-    atomic_write_text(path, report_text(report), overwrite=True)
-
-
 def report_text(report: Report) -> str:
     """Return report.md."""
     settings = ", ".join(f"{name.replace('_', ' ')} {setting}" for name, setting in report.settings.items())
@@ -174,7 +161,8 @@ def report_text(report: Report) -> str:
     measured = fill(f"Models: {models}. Settings: {settings}.", WIDTH)
     parts = [INTRODUCTION, measured + "\n", *(f"- {note}\n" for note in report.notes)]
     for section in SECTIONS:
-        tables = [text for table in section.tables if (text := _table(report, table))]
+        texts = (_listed(report, one) if isinstance(one, Listed) else _crossed(report, one) for one in section.tables)
+        tables = [text for text in texts if text]
         parts += [f"## {section.title}\n", fill(section.text, WIDTH) + "\n", *tables] if tables else []
     return "\n".join(parts)
 
@@ -185,22 +173,15 @@ def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table(report: Report, table: Listed | Crossed) -> str:
-    """Return a table in Markdown, empty where the report has no such figures."""
-    rows = [row for name in table.tables for row in report.table(name)]
-    models = tuple(report.models)
-    return _listed(rows, table, models) if isinstance(table, Listed) else _crossed(rows, table, models)
-
-
-def _listed(rows: Sequence[ReportRow], table: Listed, models: tuple[str, ...]) -> str:
+def _listed(report: Report, table: Listed) -> str:
     """Return tables, one for each group, with a row for each estimator that has the first figure.
 
     Of models after the first, only the answers with the file's metadata are listed.
     """
-    others = [f"{model}, {way}" for model in models[1:] for way in ("EXIF", "metadata")]
+    others = [f"{model}, {way}" for model in list(report.models)[1:] for way in ("EXIF", "metadata")]
     first, unlisted = next(iter(table.figures.values())), (*HIDDEN, *others)
     groups: dict[str, list[list[str]]] = {}
-    for row in rows:
+    for row in report.table(*table.tables):
         is_chosen = first in row and (not table.groups or row["group"] in table.groups)
         if is_chosen and not row["estimator"].startswith(unlisted):
             cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
@@ -208,16 +189,16 @@ def _listed(rows: Sequence[ReportRow], table: Listed, models: tuple[str, ...]) -
     return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())
 
 
-def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...]) -> str:
+def _crossed(report: Report, table: Crossed) -> str:
     """Return a table with a row for each group and a column for each model and shown baseline."""
-    shown = {*models, *SHOWN_BASELINES}
-    rows = [
-        row for row in rows if row["estimator"] in shown or (table.has_ways and row["estimator"].startswith(models))
-    ]
-    estimators = list(dict.fromkeys(row["estimator"] for row in rows))
+    models = tuple(report.models)
+    estimators = dict[str, None]()
     groups: dict[str, dict[str, ReportRow]] = {}
-    for row in rows:
-        groups.setdefault(_name(row), {})[row["estimator"]] = row
+    for row in report.table(*table.tables):
+        name = row["estimator"]
+        if name in (*models, *SHOWN_BASELINES) or (table.has_ways and name.startswith(models)):
+            estimators[name] = None
+            groups.setdefault(_name(row), {})[name] = row
     cells = [
         [f"{name}: {_counts(next(iter(group.values())))}", *(_means(group.get(each), table) for each in estimators)]
         for name, group in groups.items()

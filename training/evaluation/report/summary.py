@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -45,7 +44,7 @@ def labels(cases: Cases, name: str) -> np.ndarray:
 
 def of_scenes(cases: Cases, *, seed: int) -> Resampling:
     """Return the weights of simulated photographs."""
-    return Resampling.of(labels(cases, "scene number"), labels(cases, "curve"), seed=seed)
+    return Resampling.of_labels(labels(cases, "scene number"), labels(cases, "curve"), seed=seed)
 
 
 def of_bodies(cases: Cases, *, seed: int) -> Resampling:
@@ -71,18 +70,17 @@ def error_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figur
 def difference_figures(cases: Cases, resampling: Resampling, first: str, second: str) -> Figures:
     """Return the paired differences of the errors of two estimators."""
     return {
-        f"{error} difference": resampling.difference(column(cases, error, first), column(cases, error, second))
+        f"{error} difference": resampling.mean(column(cases, error, first) - column(cases, error, second))
         for error in ERRORS
     }
 
 
 def change_figures(cases: Cases, clean: Cases, resampling: Resampling, estimator: str) -> Figures:
     """Return the errors under a condition relative to the errors on the same photographs without it."""
-    figures: Figures = {}
-    for error in ERRORS:
-        values, others = column(cases, error, estimator), column(clean, error, estimator)
-        figures[f"{error} x clean"] = resampling.ratio(values, others)
-    return figures
+    return {
+        f"{error} x clean": resampling.ratio(column(cases, error, estimator), column(clean, error, estimator))
+        for error in ERRORS
+    }
 
 
 def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
@@ -93,20 +91,13 @@ def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Fig
 def verdict_figures(cases: Cases, estimator: str) -> Figures:
     """Return how many answers of a model are accepted ("good" or "usable"), and how many of these are far off."""
     accepted = [row for row in cases.rows[estimator] if row["verdict"] != Verdict.DO_NOT_TRUST]
-    far_off = [{error: row[error] > limit for error, limit in FAR_OFF.items()} for row in accepted if "E_est" in row]
-    return {
-        "accepted": len(accepted),
-        "refused": len(cases) - len(accepted),
-        "far off": sum(any(one.values()) for one in far_off),
-        "far off in E_est": sum(one["E_est"] for one in far_off),
-        "far off in shape": sum(one["shape"] for one in far_off),
-    }
+    far_off = [row for row in accepted if any(row.get(error, 0) > limit for error, limit in FAR_OFF.items())]
+    return {"accepted": len(accepted), "refused": len(cases) - len(accepted), "far off": len(far_off)}
 
 
 def mean_figures(cases: Cases, estimator: str) -> Figures:
     """Return the plain means of the errors, and of what a model expected."""
-    names = [*ERRORS, "expected E_est", "expected shape"]
-    names = [name for name in names if name in cases.rows[estimator][0]]
+    names = [name for name in (*ERRORS, "expected E_est", "expected shape") if name in cases.rows[estimator][0]]
     return {f"{name} mean": float(column(cases, name, estimator).mean()) for name in names}
 
 
@@ -145,38 +136,36 @@ def weight_figures(cases: Cases, estimator: str, *, seed: int) -> Figures:
     The weights of a body are the means over its photographs; bodies are resampled. With fewer than `LEAST_BODIES`
     bodies there are no figures.
     """
-    _, body = np.unique(labels(cases, "body key"), return_inverse=True)
-    bodies = body.max() + 1
-    if bodies < LEAST_BODIES:
+    groups = cases.groups("body key").values()
+    if len(groups) < LEAST_BODIES:
         return {}
-    resampling = Resampling.of(np.arange(bodies), np.zeros(bodies, dtype=int), seed=seed)
+    resampling = Resampling.of_bodies(np.arange(len(groups)), seed=seed)
     rows = cases.rows[estimator]
-    true, estimated = (np.array([row[name] for row in rows]) for name in ("true weights", "weights"))
-    first, second = (_means(weights, body) for weights in (true, estimated))
-    return {f"weight {k + 1} correlation": _correlation(first[:, k], second[:, k], resampling) for k in range(WEIGHTS)}
+    true, estimated = (
+        np.array([np.mean([rows[number][name] for number in group], axis=0) for group in groups])
+        for name in ("true weights", "weights")
+    )
+    return {
+        f"weight {k + 1} correlation": _correlation(true[:, k], estimated[:, k], resampling) for k in range(WEIGHTS)
+    }
 
 
-def rounded(figures: Figures, decimals: int = 4) -> Figures:
-    """Return figures with their floats rounded, intervals as lists."""
-    return {name: _rounded(value, decimals) for name, value in figures.items()}
+def rounded(figures: Figures) -> Figures:
+    """Return figures with their floats rounded to 4 decimals, intervals as lists."""
+    return {name: _rounded(value) for name, value in figures.items()}
 
 
-def _rounded(value: Any, decimals: int) -> Any:
+def _rounded(value: Any) -> Any:
     """Return a figure rounded."""
-    if isinstance(value, Iterable) and not isinstance(value, str):
-        return [round(part, decimals) for part in value]
-    return round(value, decimals) if isinstance(value, float) else value
+    if isinstance(value, Interval):
+        return [round(part, 4) for part in value]
+    return round(value, 4) if isinstance(value, float) else value
 
 
 def _psnr(mean: Interval) -> Interval:
     """Return the PSNR in decibels of a mean E_lin, x 1e-2; a larger error has a smaller PSNR."""
     ends = (mean.value, mean.high, mean.low)
     return Interval(*(peak_signal_to_noise(max(end, LEAST_LINEARIZATION) / 100) for end in ends))
-
-
-def _means(values: Float64Array, groups: np.ndarray) -> Float64Array:
-    """Return the means, shape (G, K), of rows (N, K) of each group; `groups` (N,) are numbers from 0."""
-    return np.stack([values[groups == k].mean(axis=0) for k in range(groups.max() + 1)])
 
 
 def _correlation(first: Float64Array, second: Float64Array, resampling: Resampling) -> Interval:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.real import POOLED
 from training.evaluation.measure.simulated import PAPER
@@ -34,12 +32,12 @@ POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
 
 
 def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of P0 or P2: of all photographs, by exposure, by kind of scene and by scene."""
+    """Yield the figures of P0 or P2: of all photographs, by exposure, and by kind of scene."""
     weights = of_scenes(cases, seed=seed)
     yield from _errors(protocol, "", cases, weights, list(cases.rows), compared=models)
-    for column in ("exposure", "kind", "scene"):
+    for column in ("exposure", "kind"):
         for name, index in cases.groups(column).items():
-            subset = weights.subset(np.array(index))
+            subset = weights.subset(index)
             yield from _errors(f"{protocol} by {column}", str(name), cases.part(index), subset, [*models, GAMMA])
 
 
@@ -73,14 +71,10 @@ def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) ->
             if (way := row["estimator"]) in ways:
                 row |= verdict_figures(part, way) | weight_figures(part, way, seed=seed)
             yield row | _bodies(part)
-    yield from _by(f"{protocol} by kind", counted, "kind", seed=seed)
-
-
-def origin_rows(protocol: str, cases: Cases, *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures by what happened to the files after the camera, of the photographs that count and of all."""
-    for table, part in ((protocol, without_caution(cases)), (f"{protocol}, with caution,", cases)):
-        for column in ("editing", "scaling"):
-            yield from _by(f"{table} by file", part, column, seed=seed)
+    for kind, index in counted.groups("kind").items():
+        part = counted.part(index)
+        for row in _errors(f"{protocol} by kind", kind, part, of_bodies(part, seed=seed), list(part.rows)):
+            yield row | _bodies(part)
 
 
 def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[ReportRow]:
@@ -127,14 +121,6 @@ def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
 def without_caution(cases: Cases) -> Cases:
     """Return the photographs that count in the means."""
     return cases.part([number for number, row in enumerate(cases.first) if not row["caution"]])
-
-
-def _by(table: str, cases: Cases, column: str, *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of groups of real photographs, bodies resampled in each."""
-    for name, index in cases.groups(column).items():
-        part = cases.part(index)
-        for row in _errors(table, name, part, of_bodies(part, seed=seed), list(part.rows)):
-            yield row | _bodies(part)
 
 
 def _errors(
