@@ -19,7 +19,7 @@ from crfnet_core.types import Float64Array
 
 from . import stored_estimate
 from .color_management import color_spaces, data_space
-from .node_building import CHANNELS, GAP, IS_BLENDER_5, SHADER, WIDTH, NodeGrid, Socket
+from .node_building import CHANNELS, GAP, IS_BLENDER_5, SHADER, WIDTH, NodeGrid, Socket, activate
 from .node_group import linear_rec709, made_for, new_group, working_space
 from .node_links import LOOK, compositor_trees, holds_group_of
 from .plates import Datablock
@@ -43,9 +43,7 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
     node.node_tree = group
     node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in linearizing), exposure)
     _link(tree, node)
-    for other in tree.nodes:
-        other.select = other == node
-    tree.nodes.active = node
+    activate(node)
 
 
 def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None:

@@ -28,6 +28,13 @@ _COLUMN, _ROW = 190, -230
 Socket: TypeAlias = bpy.types.NodeSocket
 
 
+def activate(node: bpy.types.Node) -> None:
+    """Select a node, and no other one of its tree."""
+    for other in node.id_data.nodes:
+        other.select = other == node
+    node.id_data.nodes.active = node
+
+
 class NodeGrid:
     """A node tree whose nodes are placed in columns and rows."""
 
