@@ -14,12 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import bpy
-import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .node_links import LOOK, PLATE
-from .packed_images import has_own_file, is_painted
+from .node_links import LOOK
+from .packed_images import has_own_file, is_painted, pixels_of
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, short_hash
 
 #: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
@@ -110,10 +109,10 @@ def pack_with_plates() -> None:
 
 
 def data_of_another_config() -> list[Datablock]:
-    """Return the code values and LUTs that the present config does not take for data, as their space is unknown."""
-    marks = (CODE_VALUES_OF, PLATE, LOOK)
+    """Return the code values, and images of looks, that the present config does not take for data: an unknown space."""
     local = [image for image in (*bpy.data.images, *bpy.data.movieclips) if image.library is None]
-    return [image for image in local if any(map(image.get, marks)) and not image.colorspace_settings.is_data]
+    marked = [image for image in local if image.get(CODE_VALUES_OF) or image.get(LOOK)]
+    return [image for image in marked if not image.colorspace_settings.is_data]
 
 
 def note_files_as_read() -> None:
@@ -164,9 +163,7 @@ def _painted_copy(image: bpy.types.Image) -> bpy.types.Image:
     """Return a packed copy of an image that was painted in Blender: its 8-bit pixels are code values."""
     copy = bpy.data.images.new(image.name, *image.size, alpha=image.channels == 4)
     copy.colorspace_settings.name = data_space()  # before the pixels, which this would remove
-    pixels = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(pixels)
-    copy.pixels.foreach_set(pixels)
+    copy.pixels.foreach_set(pixels_of(image))
     copy.alpha_mode = image.alpha_mode
     copy.update()
     copy.pack()

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import bpy
 
-from .node_building import GAP, WIDTH
+from .node_building import GAP, WIDTH, activate
 from .node_links import compositor_trees, holds_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
 from .plates import Datablock, datablock_of_node
 
@@ -107,7 +107,7 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
     for source in sources or [_add_plate(tree, wanted)]:
         _show(source, wanted)
         if not _groups_behind(source, wanted.plate):
-            _activate(_insert(tree, source, wanted.group))
+            activate(_insert(tree, source, wanted.group))
     for node in (node for other in compositor_trees() for node in other.nodes if holds_group_of(node, wanted.plate)):
         node.node_tree, node.mute = wanted.group, False
         node.inputs["Exposure"].default_value = wanted.exposure
@@ -161,13 +161,6 @@ def _make_room(source: bpy.types.Node, node: bpy.types.Node) -> None:
 def _left(node: bpy.types.Node) -> float:
     """Return the left edge of a node, whatever frame it is in."""
     return node.location_absolute.x
-
-
-def _activate(node: bpy.types.Node) -> None:
-    """Select a node, and no other one of its tree."""
-    for other in node.id_data.nodes:
-        other.select = other == node
-    node.id_data.nodes.active = node
 
 
 def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:

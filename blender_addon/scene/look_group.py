@@ -19,19 +19,7 @@ from crfnet_core.types import Float64Array
 
 from . import stored_estimate
 from .color_management import color_spaces, data_space
-from .node_building import (
-    CHANNELS,
-    GAP,
-    IS_BLENDER_5,
-    SHADER,
-    WIDTH,
-    NodeGrid,
-    convert_color_space,
-    divide_by_alpha,
-    math_node,
-    multiply_by_alpha,
-    multiply_by_matrix,
-)
+from .node_building import CHANNELS, GAP, IS_BLENDER_5, SHADER, WIDTH, NodeGrid, Socket, activate
 from .node_group import linear_rec709, made_for, new_group, working_space
 from .node_links import LOOK, compositor_trees, holds_group_of
 from .plates import Datablock
@@ -55,9 +43,7 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
     node.node_tree = group
     node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in linearizing), exposure)
     _link(tree, node)
-    for other in tree.nodes:
-        other.select = other == node
-    tree.nodes.active = node
+    activate(node)
 
 
 def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None:
@@ -84,21 +70,19 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     group.nodes.clear()
     grid = NodeGrid(group)
     start, end = grid.node("NodeGroupInput", 0), grid.node("NodeGroupOutput", 15)
-    straight = divide_by_alpha(grid, start.outputs["Image"], 1)
+    straight = grid.divide_by_alpha(start.outputs["Image"], 1)
     light = grid.node("CompositorNodeExposure", 3)
-    grid.link(convert_color_space(grid, working, linear, straight, 2), light.inputs["Image"])
-    grid.link(math_node(grid, "MULTIPLY", 2, 1, start.outputs["Exposure"], -1), light.inputs["Exposure"])
+    grid.link(grid.convert_color_space(working, linear, straight, 2), light.inputs["Image"])
+    grid.link(grid.math("MULTIPLY", 2, 1, start.outputs["Exposure"], -1), light.inputs["Exposure"])
     response = _response_image(plate, f".{group.name} Response", curve)
     codes = _encoded(grid, light.outputs[0], stored_estimate.matrix(plate), response)
-    grid.link(multiply_by_alpha(grid, codes, 14), end.inputs[CODE_VALUES])
-    shown = convert_color_space(grid, srgb_space, working, codes, 13)
-    grid.link(multiply_by_alpha(grid, shown, 14), end.inputs["Image"])
+    grid.link(grid.multiply_by_alpha(codes, 14), end.inputs[CODE_VALUES])
+    shown = grid.convert_color_space(srgb_space, working, codes, 13)
+    grid.link(grid.multiply_by_alpha(shown, 14), end.inputs["Image"])
     return group
 
 
-def _encoded(
-    grid: NodeGrid, light: bpy.types.NodeSocket, matrix: Float64Array | None, response: bpy.types.Image
-) -> bpy.types.NodeSocket:
+def _encoded(grid: NodeGrid, light: Socket, matrix: Float64Array | None, response: bpy.types.Image) -> Socket:
     """Return the socket of the code values of light in linear Rec.709, clipped to [0, 1] as by the camera.
 
     The matrix leads from the plate's primaries to Rec.709; here, its inverse leads back.
@@ -110,28 +94,26 @@ def _encoded(
     grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     channels = [split.outputs[name] for name in CHANNELS]
     if matrix is not None:
-        channels = multiply_by_matrix(grid, channels, np.asarray(np.linalg.inv(matrix), float), 2)
+        channels = grid.multiply_by_matrix(channels, np.asarray(np.linalg.inv(matrix), float), 2)
     for row, (channel, light_in_it) in enumerate(zip(CHANNELS, channels, strict=True)):
-        clipped = math_node(grid, "ADD", 5, row, light_in_it, 0)
+        clipped = grid.math("ADD", 5, row, light_in_it, 0)
         clipped.node.use_clamp = True
-        position = math_node(grid, "MULTIPLY", 6, row, clipped, SAMPLES - 1)
-        sample = math_node(grid, "FLOOR", 7, row, position)
+        position = grid.math("MULTIPLY", 6, row, clipped, SAMPLES - 1)
+        sample = grid.math("FLOOR", 7, row, position)
         read = grid.node("CompositorNodeSeparateColor", 10, row=row)
         grid.link(_sample(grid, table.outputs["Image"], sample, row), read.inputs[0])
-        between = math_node(grid, "MULTIPLY_ADD", 11, row, math_node(grid, "FRACT", 7, row + 0.5, position))
+        between = grid.math("MULTIPLY_ADD", 11, row, grid.math("FRACT", 7, row + 0.5, position))
         grid.link(read.outputs["Green"], between.node.inputs[1])
         grid.link(read.outputs["Red"], between.node.inputs[2])
         grid.link(between, join.inputs[channel])
     return join.outputs[0]
 
 
-def _sample(
-    grid: NodeGrid, table: bpy.types.NodeSocket, number: bpy.types.NodeSocket, row: int
-) -> bpy.types.NodeSocket:
+def _sample(grid: NodeGrid, table: Socket, number: Socket, row: int) -> Socket:
     """Return the socket of the pixel of a number in the image of a response."""
     vector = grid.node(f"{SHADER}NodeCombineXYZ", 8, row=row)
     vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
-    grid.link(math_node(grid, "MULTIPLY_ADD", 7.5, row, number, 1 / SAMPLES, 0.5 / SAMPLES), vector.inputs["X"])
+    grid.link(grid.math("MULTIPLY_ADD", 7.5, row, number, 1 / SAMPLES, 0.5 / SAMPLES), vector.inputs["X"])
     node = grid.node("CompositorNodeMapUV", 9, row=row)
     if IS_BLENDER_5:
         node.inputs["Interpolation"].default_value = "Nearest"

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import bpy
 
@@ -26,6 +25,15 @@ CHANNELS = ("Red", "Green", "Blue")
 #: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
 _COLUMN, _ROW = 190, -230
 
+Socket: TypeAlias = bpy.types.NodeSocket
+
+
+def activate(node: bpy.types.Node) -> None:
+    """Select a node, and no other one of its tree."""
+    for other in node.id_data.nodes:
+        other.select = other == node
+    node.id_data.nodes.active = node
+
 
 class NodeGrid:
     """A node tree whose nodes are placed in columns and rows."""
@@ -39,67 +47,52 @@ class NodeGrid:
         node.location = (_COLUMN * column, _ROW * row)
         return node
 
-    def link(self, source: bpy.types.NodeSocket, target: bpy.types.NodeSocket) -> None:
+    def link(self, source: Socket, target: Socket) -> None:
         """Link an output to an input."""
         self._tree.links.new(source, target)
 
+    def math(self, operation: str, column: float, row: float, value: Socket, *numbers: float) -> Socket:
+        """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
+        node = self.node(f"{SHADER}NodeMath", column, row=row)
+        node.operation = operation
+        self.link(value, node.inputs[0])
+        for index, number in enumerate(numbers, 1):
+            node.inputs[index].default_value = number
+        return node.outputs[0]
 
-def math_node(
-    grid: NodeGrid, operation: str, column: float, row: float, value: bpy.types.NodeSocket, *numbers: float
-) -> bpy.types.NodeSocket:
-    """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-    node = grid.node(f"{SHADER}NodeMath", column, row=row)
-    node.operation = operation
-    grid.link(value, node.inputs[0])
-    for index, number in enumerate(numbers, 1):
-        node.inputs[index].default_value = number
-    return node.outputs[0]
+    def multiply_by_matrix(self, channels: list[Socket], matrix: Float64Array, column: float) -> list[Socket]:
+        """Return the sockets of red, green and blue that are multiplied by a matrix, shape (3, 3)."""
+        products = []
+        for row, factors in enumerate(matrix.tolist()):
+            total = self.math("MULTIPLY", column, row, channels[0], factors[0])
+            for index in (1, 2):
+                added = self.math("MULTIPLY_ADD", column + index, row, channels[index], factors[index])
+                self.link(total, added.node.inputs[2])
+                total = added
+            products.append(total)
+        return products
 
+    def convert_color_space(self, source: str, target: str, colors: Socket, column: float) -> Socket:
+        """Return the socket of colors that are converted from one color space to another."""
+        node = self.node("CompositorNodeConvertColorSpace", column)
+        node.from_color_space, node.to_color_space = source, target
+        self.link(colors, node.inputs["Image"])
+        return node.outputs[0]
 
-def multiply_by_matrix(
-    grid: NodeGrid, channels: Sequence[bpy.types.NodeSocket], matrix: Float64Array, column: float
-) -> list[bpy.types.NodeSocket]:
-    """Return the sockets of red, green and blue that are multiplied by a matrix, shape (3, 3)."""
-    products = []
-    for row, factors in enumerate(matrix.tolist()):
-        total = math_node(grid, "MULTIPLY", column, row, channels[0], factors[0])
-        for index in (1, 2):
-            added = math_node(grid, "MULTIPLY_ADD", column + index, row, channels[index], factors[index])
-            grid.link(total, added.node.inputs[2])
-            total = added
-        products.append(total)
-    return products
+    def multiply_by_alpha(self, colors: Socket, column: float) -> Socket:
+        """Return the socket of colors that are multiplied by their alpha."""
+        return self._convert_alpha(colors, column, "To Premultiplied", "STRAIGHT_TO_PREMUL")
 
+    def divide_by_alpha(self, colors: Socket, column: float) -> Socket:
+        """Return the socket of colors that are divided by their alpha."""
+        return self._convert_alpha(colors, column, "To Straight", "PREMUL_TO_STRAIGHT")
 
-def convert_color_space(
-    grid: NodeGrid, source: str, target: str, colors: bpy.types.NodeSocket, column: float
-) -> bpy.types.NodeSocket:
-    """Return the socket of colors that are converted from one color space to another."""
-    node = grid.node("CompositorNodeConvertColorSpace", column)
-    node.from_color_space = source
-    node.to_color_space = target
-    grid.link(colors, node.inputs["Image"])
-    return node.outputs[0]
-
-
-def multiply_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
-    """Return the socket of colors that are multiplied by their alpha."""
-    return _alpha_node(grid, colors, column, "To Premultiplied", "STRAIGHT_TO_PREMUL")
-
-
-def divide_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
-    """Return the socket of colors that are divided by their alpha."""
-    return _alpha_node(grid, colors, column, "To Straight", "PREMUL_TO_STRAIGHT")
-
-
-def _alpha_node(
-    grid: NodeGrid, colors: bpy.types.NodeSocket, column: float, kind: str, earlier_kind: str
-) -> bpy.types.NodeSocket:
-    """Return the socket of an Alpha Convert node; its kind has another name in Blender 4.5."""
-    node = grid.node("CompositorNodePremulKey", column)
-    if IS_BLENDER_5:
-        node.inputs["Type"].default_value = kind
-    else:
-        node.mapping = earlier_kind
-    grid.link(colors, node.inputs["Image"])
-    return node.outputs[0]
+    def _convert_alpha(self, colors: Socket, column: float, kind: str, earlier_kind: str) -> Socket:
+        """Return the socket of an Alpha Convert node; its kind has another name in Blender 4.5."""
+        node = self.node("CompositorNodePremulKey", column)
+        if IS_BLENDER_5:
+            node.inputs["Type"].default_value = kind
+        else:
+            node.mapping = earlier_kind
+        self.link(colors, node.inputs["Image"])
+        return node.outputs[0]

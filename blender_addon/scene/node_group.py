@@ -20,14 +20,7 @@ from crfnet_core.types import Float64Array
 from . import stored_estimate
 from .code_values import alpha_in_compositor
 from .color_management import color_spaces, data_space, running_config
-from .node_building import (
-    CHANNELS,
-    NodeGrid,
-    convert_color_space,
-    divide_by_alpha,
-    multiply_by_alpha,
-    multiply_by_matrix,
-)
+from .node_building import CHANNELS, NodeGrid, Socket
 from .node_links import PLATE
 from .plates import Datablock, short_hash
 
@@ -106,7 +99,7 @@ def _add_nodes(
     grid = NodeGrid(group)
     start, curves = grid.node("NodeGroupInput", 0), grid.node("CompositorNodeCurveRGB", 2)
     light = start.outputs["Image"]
-    grid.link(divide_by_alpha(grid, light, 1) if alpha_mode == "PREMUL" else light, curves.inputs["Image"])
+    grid.link(grid.divide_by_alpha(light, 1) if alpha_mode == "PREMUL" else light, curves.inputs["Image"])
     _draw_inverse(curves.mapping, curve)
     light = curves.outputs[0]
     if matrix is not None or alpha_mode == "NONE":
@@ -116,8 +109,8 @@ def _add_nodes(
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
     light = exposed.outputs[0]
     if alpha_mode not in ("NONE", "CHANNEL_PACKED"):
-        light = multiply_by_alpha(grid, light, 9)  # before the conversion: faster
-    grid.link(convert_color_space(grid, source, working_space(), light, 10), end.inputs["Image"])
+        light = grid.multiply_by_alpha(light, 9)  # before the conversion: faster
+    grid.link(grid.convert_color_space(source, working_space(), light, 10), end.inputs["Image"])
 
 
 def _draw_inverse(mapping: bpy.types.CurveMapping, curve: ResponseCurve) -> None:
@@ -135,9 +128,7 @@ def _draw_inverse(mapping: bpy.types.CurveMapping, curve: ResponseCurve) -> None
     mapping.update()
 
 
-def _by_channel(
-    grid: NodeGrid, light: bpy.types.NodeSocket, matrix: Float64Array | None, *, has_alpha: bool
-) -> bpy.types.NodeSocket:
+def _by_channel(grid: NodeGrid, light: Socket, matrix: Float64Array | None, *, has_alpha: bool) -> Socket:
     """Return the socket of light whose primaries a matrix, shape (3, 3), converts, and whose alpha is 1 on demand."""
     split, join = grid.node("CompositorNodeSeparateColor", 3), grid.node("CompositorNodeCombineColor", 7)
     grid.link(light, split.inputs[0])
@@ -145,7 +136,7 @@ def _by_channel(
         grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     channels = [split.outputs[channel] for channel in CHANNELS]
     if matrix is not None:
-        channels = multiply_by_matrix(grid, channels, matrix, 4)
+        channels = grid.multiply_by_matrix(channels, matrix, 4)
     for channel, socket in zip(CHANNELS, channels, strict=True):
         grid.link(socket, join.inputs[channel])
     return join.outputs[0]

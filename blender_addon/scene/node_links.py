@@ -10,7 +10,7 @@ import bpy
 
 from .plates import Datablock, datablock_of_node, shown_by_node
 
-#: The custom property of the add-on's node groups, and of earlier LUT images; its value is the plate's image or clip.
+#: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"
 
 #: The same of the node groups "Camera Look" and their images.

@@ -12,7 +12,7 @@ import numpy as np
 from ..work.errors import AddonError
 
 if TYPE_CHECKING:
-    from crfnet_core.types import Uint8Array
+    from crfnet_core.types import Float32Array, Uint8Array
 
 
 #: The attribute of an editor that holds the number of the frame it shows.
@@ -48,11 +48,16 @@ def codes_of_pixels(image: bpy.types.Image) -> Uint8Array:
     width, height = image.size
     if not width * height or not len(image.pixels):
         raise AddonError(f"{image.name}: has no pixels; open a photograph")
-    pixels = np.empty(len(image.pixels), dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    codes = np.rint(pixels * 255).astype(np.uint8).reshape(height, width, image.channels)[::-1]
+    codes = np.rint(pixels_of(image) * 255).astype(np.uint8).reshape(height, width, image.channels)[::-1]
     is_opaque = image.channels == 4 and bool((codes[..., 3] == 255).all())
     return np.ascontiguousarray(codes[..., :3] if is_opaque else codes)
+
+
+def pixels_of(image: bpy.types.Image) -> Float32Array:
+    """Return the pixels that Blender has of an image, float32, shape (H * W * C,), the bottom row first."""
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels
 
 
 def shown_number(movie: bpy.types.Image | bpy.types.MovieClip) -> int:

@@ -37,11 +37,6 @@ COMPARED_PLATE = "camera_response_plate"
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
-def is_in_editor(context: bpy.types.Context) -> bool:
-    """Return whether one of the `EDITORS` is active; it is not where a script runs."""
-    return context.area is not None and context.area.type in EDITORS
-
-
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, the active node's.
 

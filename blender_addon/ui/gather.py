@@ -38,8 +38,12 @@ def gather_job(
     if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
         raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
     plate = plates.plate_of(datablock)
-    _check_mode(datablock, ApplyMode(chosen["apply"]))
     if chosen["apply"] == ApplyMode.NODES:
+        if not plates.is_shown(datablock):
+            raise AddonError(
+                f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
+                " photograph as JPEG or PNG"
+            )
         node_group.check_config()
     return Job(
         plate=plate,
@@ -62,15 +66,6 @@ def gather_job(
         output=_output(plate, chosen, despite_verdict=despite_verdict),
         config=color_management.running_config(),
     )
-
-
-def _check_mode(datablock: plates.Datablock, mode: ApplyMode) -> None:
-    """Raise an AddonError if Blender would have to show a plate that it cannot read."""
-    if mode is ApplyMode.NODES and not plates.is_shown(datablock):
-        raise AddonError(
-            f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
-            " photograph as JPEG or PNG"
-        )
 
 
 def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | None:

@@ -33,7 +33,8 @@ class ChosenPlate:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether it can run on the editor's plate now, and tell why if not; a script names its plate."""
-        return is_allowed(cls, running.why_busy() or (cls.why_not(context) if plates.is_in_editor(context) else ""))
+        is_in_editor = context.area is not None and context.area.type in plates.EDITORS  # not where a script runs
+        return is_allowed(cls, running.why_busy() or (cls.why_not(context) if is_in_editor else ""))
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:

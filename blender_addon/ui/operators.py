@@ -93,18 +93,14 @@ class PlateOperator(ChosenPlate, PlateChoices):
     def _gather_job(self, context: bpy.types.Context) -> "Job":
         """Return the job; arguments of the call take precedence over the settings of the plate."""
         datablock = self.estimated_plate(context) if self.is_estimated else self.chosen_plate(context)
-        if self.is_estimated:
-            self._check_trust(datablock)
+        is_doubted = self.is_estimated and stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
+        if is_doubted and not self.anyway:
+            raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
         gather = lazy_import.load(".ui.gather")
         return gather.gather_job(
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
         )
-
-    def _check_trust(self, datablock: plates.Datablock) -> None:
-        """Raise an AddonError unless the plate's response is to be trusted, or is applied anyway."""
-        if stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST and not self.anyway:
-            raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
 
     def _apply(self, context: bpy.types.Context, completed: "CompletedJob") -> set[str]:
         """Apply a completed job to the scene, and report what was done."""
@@ -168,14 +164,9 @@ class CRF_OT_cancel_run(bpy.types.Operator):
         return {"FINISHED"}
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+register, _unregister_classes = bpy.utils.register_classes_factory(
     (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
 )
-
-
-def register() -> None:
-    """Register the operators."""
-    _register_classes()
 
 
 def unregister() -> None:

@@ -26,7 +26,9 @@ _LOG_OR_LINEAR_NAME = re.compile(r"linear|^lin_|aces|adx\d|\blog|log\w?\d?\b", r
 
 def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     """Raise AddonError if a plate's color space in a config is logarithmic or linear; `file` is one of its files."""
-    if not _is_guess(plate, file) and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
+    # Blender takes every DPX file for linear
+    is_guess = file.suffix.lower() == ".dpx" and "linear" in plate.color_space.lower()
+    if not is_guess and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
         raise AddonError(
             f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so it has no camera"
             " response: choose its color space in Blender, or tick Estimate Anyway under Advanced"
@@ -56,11 +58,6 @@ def is_log_or_linear(color_space: str, encoding: str = "") -> bool:
     if encoding:
         return encoding in _LOG_OR_LINEAR_ENCODINGS
     return bool(_LOG_OR_LINEAR_NAME.search(color_space))
-
-
-def _is_guess(plate: Plate, file: Path) -> bool:
-    """Return whether the color space is only Blender's guess: it takes every DPX file for linear."""
-    return file.suffix.lower() == ".dpx" and "linear" in plate.color_space.lower()
 
 
 def _encoding(color_space: str, config: str) -> str:

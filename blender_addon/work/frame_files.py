@@ -107,16 +107,11 @@ def frame_reader(plate: Plate) -> Iterator[FrameReader]:
 
     Raise AddonError if they cannot be written, or the plate is a movie of more than 8 bits.
     """
-    if _has_own_files(plate):
+    if plate.content is None and not plate.frame_count:
         yield lambda sequence: sequence
         return
     with _temporary_folder(plate) as folder:
         yield partial(_written, plate, folder)
-
-
-def _has_own_files(plate: Plate) -> bool:
-    """Return whether the estimator can read the plate's own files."""
-    return plate.content is None and not plate.frame_count
 
 
 @contextmanager

@@ -110,9 +110,11 @@ def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: 
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
     plan = OutputPlan(replace(output_files(job.plate, folder), linear=targets), options, lut_length=0)
+    primaries = PlatePrimaries(REC709, "as the plate is tagged")
+    light = PlateLight(lut, stops, primaries, linear_space(primaries))
     with frame_reader(job.plate) as read:
         linearize = partial(_linearize, job.plate.alpha_mode)
-        deliver(plan, _light(lut, stops), [read(sequence)], linearize=linearize, progress=progress)
+        deliver(plan, light, [read(sequence)], linearize=linearize, progress=progress)
     return Baked(targets, job.plate.is_sequence)
 
 
@@ -130,13 +132,7 @@ def _linearize(
     linearize_plates(frames, targets, lut, options, progress=progress)
 
 
-def _light(lut: Lut1D, stops: float, primaries: Primaries = REC709) -> PlateLight:
-    """Return the meaning of the linear values."""
-    plate = PlatePrimaries(primaries, "as the plate is tagged")
-    return PlateLight(lut, stops, plate, linear_space(plate))
-
-
-def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:
+def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
     """Write the LUT in three formats, and the config that Blender runs on with the plate's color space added."""
     folder = _folder(job)
     files = output_files(job.plate, folder)

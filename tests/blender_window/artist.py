@@ -93,8 +93,7 @@ class Artist:
             x = box.x + round(column * box.width)
             rows = []
             for y in range(first, last, step):
-                self.screen.move(x, y)
-                if self.call("editors.button", "IMAGE_EDITOR", "UI").startswith(command):
+                if self._is_lit(command, x, y):
                     rows.append(y)
                 elif rows:
                     break
@@ -102,15 +101,20 @@ class Artist:
                 return x, (rows[0] + rows[-1]) // 2
         raise LookupError(f"there is no button {command}...) in the sidebar")
 
-    def press(self, command: str = ESTIMATE) -> float:
-        """Press a button of the sidebar; return the time of the click in seconds, by `time.monotonic`."""
-        return self.screen.click(*self.find(command))
+    def press(self, command: str = ESTIMATE, position: tuple[int, int] | None = None) -> float:
+        """Press a button of the sidebar, which is found unless its position is given; return the time of the click.
+
+        Blender ignores a click on a button that is not lit yet, as when it reads the movement and the click at once.
+        """
+        place = position or self.find(command)
+        self.wait(lambda: self._is_lit(command, *place), f"the button {command}...) is lit")
+        return self.screen.click(*place)
 
     def start(self, command: str = ESTIMATE) -> float:
         """Press a button that starts a run, and wait until it runs or has reported; return the time of the click."""
         position, reports = self.find(command), self._reports()
         self.call("runs.watch")
-        clicked = self.screen.click(*position)
+        clicked = self.press(command, position)
         self.wait(lambda: self.call("runs.has_started") or self._reports() > reports, "the run starts", MOMENT)
         return clicked
 
@@ -125,6 +129,12 @@ class Artist:
             return time.monotonic()
         self.wait(lambda: self.call("runs.ended") is not None, "the run ends", RUN)
         return self.call("runs.ended")
+
+    def _is_lit(self, command: str, x: int, y: int) -> bool:
+        """Move the mouse to a pixel, and return whether Blender has lit the button of a command there."""
+        self.screen.move(x - 1, y)  # Blender leaves a button at one movement, and enters the next at another
+        self.screen.move(x, y)
+        return self.call("editors.button", "IMAGE_EDITOR", "UI").startswith(command)
 
     def _reports(self) -> int:
         """Return how often Blender has printed the report of an operator."""

@@ -16,7 +16,7 @@ class TestComparison(WindowTest):
         view, before = artist.call("editors.view"), artist.picture()
         for _ in range(2):
             row = artist.find(SHOW_LINEAR)
-            artist.screen.click(*row)
+            artist.press(SHOW_LINEAR, row)
             artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")
             artist.settle()
             self.assert_view(artist, view)

@@ -69,7 +69,7 @@ class TestRunning(WindowTest):
         artist, name = self.start_with("large.jpg", apply="BAKE", folder=str(self.folder / "look"))
         _, row = artist.find(ESTIMATE)
         artist.start()
-        artist.screen.click(*artist.find(CANCEL, row=row))
+        artist.press(CANCEL, artist.find(CANCEL, row=row))
         artist.wait_for_end()
         self.assertIsNone(artist.call("plates.stored", name))
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from ... import lazy_import
 from ...scene.color_management import running_config
-from ...scene.packed_images import codes_of_frame
+from ...scene.packed_images import codes_of_frame, pixels_of
 from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, is_heif, plate_itself, plate_of
 from ...work.errors import AddonError
 
@@ -111,24 +111,17 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if is_heif(image) or image.source == "SEQUENCE":
         return _codes_of_file(image, user)
     if not width * height:
-        raise _unreadable(image)
+        raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
     if image.source == "MOVIE":
         return _codes_of_movie(image, user.frame_current)
     alpha = alpha_mode(image)
     # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
     if image.is_float or alpha == "PREMUL":
         return _codes_of_file(image, user)
-    pixels = _pixels(image)
+    pixels = pixels_of(image).reshape(height, width, image.channels)
     if image.channels < 3:
         return pixels[..., :1].repeat(3, axis=2)
     return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
-
-
-def _pixels(image: bpy.types.Image) -> Float32Array:
-    """Return the pixels that Blender has of an image, shape (H, W, C)."""
-    flat = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(flat)
-    return flat.reshape(image.size[1], image.size[0], image.channels)
 
 
 def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
@@ -140,11 +133,6 @@ def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
             " image sequence"
         )
     return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
-
-
-def _unreadable(image: bpy.types.Image) -> AddonError:
-    """Return the error that Blender cannot read an image."""
-    return AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:

@@ -175,14 +175,9 @@ def _key(plate: bpy.types.Image, stops: float) -> str:
     return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source == "FILE" else ""
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+register, _unregister_classes = bpy.utils.register_classes_factory(
     (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
 )
-
-
-def register() -> None:
-    """Register the tools."""
-    _register_classes()
 
 
 def unregister() -> None:

@@ -88,7 +88,8 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
             result = failed(self, problem)
             return {"FINISHED"} if done else result
         running.redraw_editors(context.window_manager)
-        self.report({"INFO"}, f"{source.name}: {_count(done)} its response now; {_what_was_done(source)}")
+        count = "one more plate has" if done == 1 else f"{done} more plates have"
+        self.report({"INFO"}, f"{source.name}: {count} its response now; {_what_was_done(source)}")
         for datablock in chosen:
             if camera := other_camera(source, datablock):
                 self.report({"WARNING"}, f"{datablock.name}: its file names another camera, {camera}")
@@ -154,11 +155,6 @@ def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> 
     datablock.camera_response_settings.apply = source.camera_response_settings.apply
     if completed.is_applied:
         remember_applied(datablock)
-
-
-def _count(plates_done: int) -> str:
-    """Return in words how many other plates have the response."""
-    return "one more plate has" if plates_done == 1 else f"{plates_done} more plates have"
 
 
 def _what_was_done(source: plates.Datablock) -> str:
