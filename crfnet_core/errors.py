@@ -101,9 +101,10 @@ class CameraError(CRFNetError):
 
 def beside_limits(value: float, *limits: float) -> str:
     """Return a number with two decimals, or up to six where fewer would hide on which side of a limit it lies."""
-    decimals = 2
-    while decimals < 6 and any(_sides(value, limit) != _sides(round(value, decimals), limit) for limit in limits):
-        decimals += 1
+    for decimals in range(2, 7):
+        shown = round(value, decimals)
+        if all((value > limit, value < limit) == (shown > limit, shown < limit) for limit in limits):
+            break
     return f"{value:.{decimals}f}"
 
 
@@ -111,8 +112,3 @@ def one_line(problem: BaseException | str) -> str:
     """Return an error's text on one line; control characters, as a damaged file may bring, become question marks."""
     text = " ".join(str(problem).split())
     return "".join(character if character.isprintable() else "?" for character in text)
-
-
-def _sides(value: float, limit: float) -> tuple[bool, bool]:
-    """Return whether a number is above a limit, and whether it is below."""
-    return value > limit, value < limit

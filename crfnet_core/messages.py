@@ -87,12 +87,8 @@ SENTENCES: Mapping[str, str] = {
     " order), 'RGBA', 'BGRA' or 'LA'",
     "photo_pixels": "{path}: the pixels are {kind}, shape {shape}; a Photo holds float32 of shape (H, W, 3):"
     " Photo.from_array converts",
-    "pillow_mode_of_numbers": "{path}: is a Pillow image of mode '{mode}', numbers of 32 bits; give"
-    " numpy.asarray(image), as uint16 with its bit_depth, or scaled to [0, 1]",
-    "pillow_mode_of_other_colors": "{path}: is a Pillow image of mode '{mode}', which hides the camera's response; give"
-    " the RGB photograph that it was made from",
-    "pillow_mode_unknown": "{path}: is a Pillow image of mode '{mode}', which is not taken; give image.convert('RGB'),"
-    " or 'RGBA' if it has alpha",
+    "pillow_mode": "{path}: is a Pillow image of mode '{mode}', which is not taken; give the RGB photograph that it was"
+    " made from, or its codes of 8 or 16 bits as an array",
     "pillow_order_stated": "{path}: is a Pillow image of mode '{mode}', so leave color_order='{order}' out",
     # photograph: files
     "camera_raw": "{path}: camera raw holds no encoded picture; give the JPEG, HEIC or TIFF developed from it, or the"

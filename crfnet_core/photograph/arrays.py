@@ -25,12 +25,6 @@ PILLOW_MODES: dict[str, ColorOrder] = {
     **dict.fromkeys(("I;16", "I;16L", "I;16B", "I;16N"), "L"),
 }
 
-#: The refusals of other modes; of any that is not listed, Pillow's conversion to RGB is harmless.
-_OTHER_MODES = {
-    **dict.fromkeys(("P", "CMYK", "LAB"), "pillow_mode_of_other_colors"),
-    **dict.fromkeys(("I", "F"), "pillow_mode_of_numbers"),
-}
-
 
 def pixels_from_array(
     array: Any, *, color_order: ColorOrder | None, bit_depth: int | None, name: str
@@ -73,7 +67,7 @@ def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> C
         return color_order
     order = PILLOW_MODES.get(mode)
     if order is None:
-        raise PhotoError(_OTHER_MODES.get(mode, "pillow_mode_unknown"), path=name, mode=mode)
+        raise PhotoError("pillow_mode", path=name, mode=mode)
     if color_order not in (None, order):
         raise PhotoError("pillow_order_stated", path=name, mode=mode, order=color_order)
     return order

@@ -128,9 +128,7 @@ def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
         (EXACT - np.float32(0.1), {"color_order": "RGB"}, "array_out_of_range"),
         (np.full((2, 2), np.nan), {}, "array_holds_nan"),
         (np.full((2, 2), np.inf), {}, "array_out_of_range"),
-        (Image.new("P", (4, 4)), {}, "pillow_mode_of_other_colors"),
-        (Image.new("1", (4, 4)), {}, "pillow_mode_unknown"),
-        (Image.new("F", (4, 4)), {}, "pillow_mode_of_numbers"),
+        *((Image.new(mode, (4, 4)), {}, "pillow_mode") for mode in ("P", "CMYK", "1", "F")),
         (Image.fromarray(CODES), {"color_order": "BGR"}, "pillow_order_stated"),
     ],
 )

@@ -74,14 +74,6 @@ class Levels:
             np.sum([each.luma / each.luma.sum() for each in levels], axis=0),
         )
 
-    def quantile(self, fraction: float) -> float:
-        """Return the brightness in [0, 1] of which at most this fraction of the samples lies below."""
-        return _quantile(self.histogram, fraction)
-
-    def luma_quantile(self, fraction: float) -> float:
-        """Return the luma in [0, 1] of which at most this fraction of the pixels lies below."""
-        return _quantile(self.luma, fraction)
-
     def fraction(self, low: float, high: float) -> float:
         """Return the fraction of the samples from one brightness to another, both included."""
         first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
@@ -90,22 +82,22 @@ class Levels:
     @property
     def is_flat(self) -> bool:
         """Whether luma has no range to speak of, so that no response shows."""
-        return self.luma_quantile(1 - BLACK) - self.luma_quantile(BLACK) < FLAT_RANGE
+        return quantile(self.luma, 1 - BLACK) - quantile(self.luma, BLACK) < FLAT_RANGE
 
     @property
     def black(self) -> float:
         """The brightness of the darkest samples."""
-        return self.quantile(BLACK)
+        return quantile(self.histogram, BLACK)
 
     @property
     def middle(self) -> float:
         """The median brightness."""
-        return self.quantile(MIDDLE)
+        return quantile(self.histogram, MIDDLE)
 
     @property
     def white(self) -> float:
         """The brightness of the brightest samples."""
-        return self.quantile(WHITE)
+        return quantile(self.histogram, WHITE)
 
 
 def is_limited_range(levels: Levels) -> bool:
@@ -120,7 +112,7 @@ def is_limited_range(levels: Levels) -> bool:
 
 def _has_ends(levels: Levels) -> bool:
     """Return whether black and white lie near 16 and 235. JPEG compression blurs piles, and least of all in luma."""
-    black, white = levels.luma_quantile(BEYOND), levels.luma_quantile(1 - BEYOND)
+    black, white = quantile(levels.luma, BEYOND), quantile(levels.luma, 1 - BEYOND)
     has_ends = BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
     return has_ends and levels.fraction(LIMITED_WHITE + _BAND, 1) <= MOST_ABOVE
 
@@ -141,8 +133,8 @@ def _histogram(samples: Float32Array) -> Float64Array:
     return np.bincount(codes.ravel(), minlength=BINS).astype(np.float64)
 
 
-def _quantile(histogram: Float64Array, fraction: float) -> float:
-    """Return the code in [0, 1] of which at most this fraction lies below."""
+def quantile(histogram: Float64Array, fraction: float) -> float:
+    """Return the brightness in [0, 1] of which at most this fraction of the samples, or of luma, lies below."""
     cumulative = np.cumsum(histogram)
     position = int(np.searchsorted(cumulative, fraction * cumulative[-1], side="right"))
     return min(position, BINS - 1) / (BINS - 1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.photograph.recognition.levels import Levels
+from crfnet_core.photograph.recognition.levels import Levels, quantile
 from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, LOG_CURVES, MOST_REFLECTANCE, LogCurve
 from crfnet_core.types import Float64Array
 
@@ -79,7 +79,7 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
 
 def light_error(named: LogCurve, true: LogCurve, levels: Levels) -> float:
     """Return how far the light of a picture is off, in stops, if one curve is taken for another: a shape error."""
-    codes = np.linspace(levels.quantile(DARK), levels.white, 64)
+    codes = np.linspace(quantile(levels.histogram, DARK), levels.white, 64)
     return float(np.log2(_reflectance(named, codes) / _reflectance(true, codes)).std())
 
 

@@ -24,7 +24,7 @@ from crfnet_core.photograph.recognition import (
     recognize,
     refuse_tagged,
 )
-from crfnet_core.photograph.recognition.levels import BEYOND, BLACKS, WHITES
+from crfnet_core.photograph.recognition.levels import BEYOND, BLACKS, WHITES, quantile
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
@@ -215,6 +215,6 @@ def test_warm_photographs_are_not_limited_range():
     warm = np.concatenate([codes * 255 / 235, codes, codes * 215 / 235], axis=2)
     warm[..., 0][codes[..., 0] > 200] = 255
     levels = Levels.from_pixels(quantized(warm / 255))
-    assert BLACKS[0] <= levels.luma_quantile(BEYOND) <= BLACKS[1]
-    assert WHITES[0] <= levels.luma_quantile(1 - BEYOND) <= WHITES[1]
+    assert BLACKS[0] <= quantile(levels.luma, BEYOND) <= BLACKS[1]
+    assert WHITES[0] <= quantile(levels.luma, 1 - BEYOND) <= WHITES[1]
     assert not is_limited_range(levels)
