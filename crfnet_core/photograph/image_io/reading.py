@@ -122,8 +122,7 @@ class _OpenFile:
 
     def metadata(self) -> FileMetadata:
         """Return the metadata of the upright picture."""
-        jpeg = self.jpeg.metadata if self.jpeg else FileMetadata()
-        metadata = metadata_of_header(self._upright_header(), self.kind, jpeg)
+        metadata = metadata_of_header(self._upright_header(), self.kind, self.jpeg.metadata if self.jpeg else None)
         has_gain_map = self.has_gain_map or metadata.has_gain_map
         return replace(metadata, is_turned=self.turn != UPRIGHT, has_gain_map=has_gain_map)
 

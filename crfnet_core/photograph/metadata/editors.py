@@ -22,15 +22,13 @@ EDITORS = (
     *("silkypix", "raw file converter"),
     # editors on computers
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
-    "filmpack",
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
-    *("irfanview", "xnview", "faststone", "picasa", "iphoto", "photos ", "digikam", "shotwell", "gthumb"),
-    "microsoft ice",
+    *("irfanview", "xnview", "faststone", "picasa", "iphoto", "photos ", "digikam", "shotwell", "gthumb", "filmpack"),
     *("windows photo", "windows live photo", "microsoft windows photo", "photodirector", "movavi", "ashampoo", "magix"),
     *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
     # HDR merging and panoramas
     *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
-    *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects"),
+    *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
     # on phones and in the web
     *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
     *("camera360", "facetune", "afterlight", "prisma", "canva", "retrica", "faceapp", "remini", "touchretouch"),

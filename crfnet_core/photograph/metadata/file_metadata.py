@@ -54,12 +54,9 @@ class FileMetadata:
         return bool(self.make or self.model)
 
 
-#: The metadata of a file that states nothing.
-EMPTY = FileMetadata()
-
-
-def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata = EMPTY) -> FileMetadata:
+def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None = None) -> FileMetadata:
     """Return the metadata in an open file's header, and in the segments of a JPEG; damaged fields stay empty."""
+    jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     names = _text(header, "dpx:Transfer"), _text(header, "ICCProfile:profile_description")
