@@ -33,18 +33,8 @@ if TYPE_CHECKING:
     from crfnet_core.response.curve import ResponseCurve
     from crfnet_core.response.emor import EmorBasis
 
-__all__ = [
-    "AnalysisOptions",
-    "CRFNetError",
-    "EmorBasis",
-    "Photo",
-    "ResponseCurve",
-    "ResponseEstimate",
-    "ResponseNetwork",
-    "estimate_photograph",
-    "estimate_response",
-    "read_photo",
-]
+__all__ = ["AnalysisOptions", "CRFNetError", "EmorBasis", "Photo", "ResponseCurve", "ResponseEstimate"]
+__all__ += ["ResponseNetwork", "estimate_photograph", "estimate_response", "read_photo"]
 
 #: The module of each public name, and its name there.
 _PLACES = {

@@ -40,54 +40,30 @@ class Cue:
     #: From the samples of a window to the sums; of a cue with `terms`, to the sums and their numbers of terms.
     count: Callable[[Samples], NDArray[Any] | tuple[NDArray[Any], NDArray[Any]]]
     meaning: str  # the sums in words
-    symbol: str  # the same in docs/METHOD.md
-    #: Shape of the numbers of terms, which the network divides the sums by; None if the sums include them.
-    terms: tuple[int, ...] | None = None
+    #: Last axes of the sums that share a number of terms, by which the network divides; 0 if the sums include these.
+    shared: int = 0
+
+    @property
+    def terms(self) -> tuple[int, ...] | None:
+        """The shape of the numbers of terms; None if the sums include them."""
+        return (*self.shape[: -self.shared], *[1] * self.shared) if self.shared else None
 
 
 #: All cues in the order of the vector. Add new ones at the end.
 CUES = (
-    Cue("histogram", HISTOGRAM_SHAPE, level_histogram, "samples at each level of each channel", "$N_l$, Eq. 8"),
-    Cue("gradients", GRADIENTS_SHAPE, gradient_sums, "differences of neighbors at each level", "$d$, Eq. 9"),
-    Cue("edges", EDGES_SHAPE, edge_sums, "number of edges and their encoded ratios less a half", r"$\beta$, Eq. 10"),
-    Cue(
-        "channel_equations",
-        EQUATIONS_SHAPE,
-        channel_equations,
-        "equations for the curvature of $g$",
-        "$A$, $r$, Eq. 12",
-    ),
-    Cue(
-        "mixing",
-        MIXING_SHAPE,
-        mixing,
-        "mixing ratios under each candidate",
-        r"$\alpha$, Eq. 13",
-        (*MIXING_SHAPE[:2], 1, 1),
-    ),
-    Cue(
-        "disagreement",
-        DISAGREEMENT_SHAPE,
-        disagreement,
-        "disagreement of the channels on mixing ratios",
-        r"$\rho$, Eq. 5",
-        (*DISAGREEMENT_SHAPE[:-1], 1),
-    ),
-    Cue(
-        "shading",
-        SHADING_SHAPE,
-        shading,
-        "disagreement of the channels on shading",
-        r"$\rho$, Eq. 14",
-        (SHADING_SHAPE[0], 1),
-    ),
+    Cue("histogram", HISTOGRAM_SHAPE, level_histogram, "samples at each level of each channel"),
+    Cue("gradients", GRADIENTS_SHAPE, gradient_sums, "differences of neighbors at each level"),
+    Cue("edges", EDGES_SHAPE, edge_sums, "number of edges and their encoded ratios less a half"),
+    Cue("channel_equations", EQUATIONS_SHAPE, channel_equations, "equations for the curvature of $g$"),
+    Cue("mixing", MIXING_SHAPE, mixing, "mixing ratios under each candidate", 2),
+    Cue("disagreement", DISAGREEMENT_SHAPE, disagreement, "disagreement of the channels on mixing ratios", 1),
+    Cue("shading", SHADING_SHAPE, shading, "disagreement of the channels on shading", 1),
     Cue(
         "half_resolution_disagreement",
         HALF_RESOLUTION_SHAPE,
         half_resolution_disagreement,
         "disagreement on mixing ratios at half the resolution",
-        r"$\rho$, Eq. 5",
-        (*HALF_RESOLUTION_SHAPE[:-1], 1),
+        1,
     ),
 )
 
@@ -115,8 +91,9 @@ def window_statistics(window: Float32Array) -> Float32Array:
     The window holds code values in [0, 1], shape (227, 227, 3). `unpack` returns the parts by name.
     """
     samples = Samples.from_window(window)
-    parts = [part.ravel() for cue in CUES for part in _parts(cue.count(samples))]
-    return np.concatenate(parts).astype(np.float32)
+    counted = [cue.count(samples) for cue in CUES]
+    parts = [part for each in counted for part in (each if isinstance(each, tuple) else (each,))]
+    return np.concatenate([part.ravel() for part in parts]).astype(np.float32)
 
 
 def unpack(statistics: Any) -> dict[str, Any]:
@@ -126,8 +103,3 @@ def unpack(statistics: Any) -> dict[str, Any]:
         name: statistics[..., _ENDS[name] - math.prod(shape) : _ENDS[name]].reshape(leading + shape)
         for name, shape in SHAPES.items()
     }
-
-
-def _parts(counted: NDArray[Any] | tuple[NDArray[Any], ...]) -> tuple[NDArray[Any], ...]:
-    """Return the sums, and their numbers of terms if there are any."""
-    return counted if isinstance(counted, tuple) else (counted,)

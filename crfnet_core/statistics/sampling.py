@@ -28,23 +28,14 @@ Row = tuple[Uint8Array, ...]
 
 
 class Triples(NamedTuple):
-    """Three samples a, b, c in a row, and the codes that show whether they are an edge, each uint8 (3, M).
-
-    Parameters
-    ----------
-    a, b, c, low : ndarray
-        Codes; low is the lower one of a and c.
-    height, rise : ndarray
-        Codes from low to the other side, and to b. For b below low, the rise is (b - low) modulo 256, which is more
-        than any height can be. So b lies between a and c exactly if the rise is at most the height.
-    """
+    """Three samples a, b, c in a row, and the codes that show whether they are an edge, each uint8 (3, M)."""
 
     a: Uint8Array
     b: Uint8Array
     c: Uint8Array
-    low: Uint8Array
-    height: Uint8Array
-    rise: Uint8Array
+    low: Uint8Array  # the lower one of a and c
+    height: Uint8Array  # from low to the other side
+    rise: Uint8Array  # from low to b; modulo 256, and so more than any height, for b below low
 
     @classmethod
     def among(cls, row: Row) -> Triples:
