@@ -46,7 +46,7 @@ def read_raw(path: Path) -> RawPicture:
         raise PhotoError("rawpy_missing", path=path) from None
     try:
         with rawpy.imread(str(path)) as raw:
-            is_bayer = raw.raw_type == rawpy.RawType.Flat and np.shape(raw.raw_pattern) == _BAYER
+            is_bayer = raw.raw_type == rawpy.RawType.Flat and getattr(raw.raw_pattern, "shape", None) == _BAYER
             light, is_saturated = _bayer_light(raw) if is_bayer else _developed_light(raw, rawpy)
             balance = np.array(raw.camera_whitebalance[:3], dtype=np.float64)
             return RawPicture(

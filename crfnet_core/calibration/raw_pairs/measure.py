@@ -34,7 +34,7 @@ SEEN_PARTS = (0.005, 0.998)
 #: Exponents of local tone mapping that are refused, and that are worth a notice.
 MOST_LOCAL, NOTABLE_LOCAL = 0.1, 0.03
 
-#: Largest gradient in stops over the diagonal: no camera makes one. Gradient filters of simulated edits make more than 1.
+#: Largest gradient in stops over the diagonal: no camera makes one.
 MOST_TILT = 0.5
 
 #: Stops between shots, residual in 8-bit codes, and fraction of outliers from which one curve does not explain them.
@@ -43,8 +43,8 @@ MOST_APART, MOST_RESIDUAL, MOST_OUTLIERS = 0.15, 4.0, 0.35
 #: Stops between raw saturation and white within which they are the same, and the deviation of their distance then.
 SAME_WHITE, SAME_WHITE_DEVIATION = 0.12, 0.03
 
-#: The least parts in stops. The responses of halves of a real camera's shots differ by the shape's, although one picture
-#: does not show it: 0.024 to 0.046 stop for a Canon S40, a PowerShot G2 and a GoPro HERO7.
+#: The least parts in stops. Responses of halves of a real camera's shots differ by the shape's, and one picture does
+#: not show it: 0.024 to 0.046 stop for a Canon S40, a PowerShot G2 and a GoPro HERO7.
 LEAST_SHAPE, LEAST_SCALE = 0.03, 0.02
 
 #: Standard deviation of white in stops: so that the stated one holds for four of five simulated pairs. A response that

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.errors import PlateError
 from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
