@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from crfnet_core.calibration.curve_model import STEPS, CurveModel
+from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.raw_pairs.cells import Cells
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -28,9 +28,6 @@ LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION = 0.2, 0.5, 0.
 
 #: Stops by which raw saturation of white lies above the JPEG's white: the prior mean and its standard deviation.
 HEADROOM, HEADROOM_DEVIATION = 0.2, 0.3
-
-#: Least slope df/du, in brightness a stop, that costs nothing, and the standard deviation that weighs a lower one.
-LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 
 #: Brightness from which on the model's value for a white cell costs nothing.
 WHITE_BRIGHTNESS = 1 - 0.5 / 255
@@ -111,8 +108,6 @@ class _Problem:
         self.precision = 255 / cells.deviation / np.sqrt(DEFLATION)
         self.mean = model.weights_of(in_camera_mean())
         self.root = np.linalg.cholesky(model.precision).T
-        self.slope_basis = np.diff(model.basis[::8], axis=0) * (STEPS / 8)
-        self.slope_mean = np.diff(model.mean[::8]) * (STEPS / 8)
         codes = cells.codes
         self.chroma = np.ptp(codes, axis=1, keepdims=True) / np.maximum(codes.max(axis=1, keepdims=True), 1) / 0.35
         near_white = cells.is_white & (cells.codes.min(axis=1, keepdims=True) > 200)
@@ -186,12 +181,11 @@ class _Problem:
         """Return the residuals of cells, and of the priors, in standard deviations."""
         cells = self.off(state) * weight * self.precision
         weights = state[: self.size]
-        slope = self.slope_mean + self.slope_basis @ weights
         return np.concatenate(
             [
                 cells.ravel(),
                 self.root @ (weights - self.mean),
-                np.maximum(LEAST_SLOPE - slope, 0) / SLOPE_DEVIATION,
+                self.model.low_slopes(weights)[0],
                 state[self.size + 9 :] / self.deviations,
                 [(self.headroom(state) - self.expected[0]) / self.expected[1]],
             ]
@@ -209,11 +203,11 @@ class _Problem:
             columns = slice(size + 3 * channel, size + 3 * channel + 3)
             cells[:, channel, columns] = (values.slope / light)[:, channel, None] / np.log(2) * self.cells.light
         cells[..., size + 9 :] = values.slope[..., None] * self.causes[:, None]
-        slope = self.slope_mean + self.slope_basis @ state[:size]
-        priors = np.zeros((size + len(slope) + len(self.deviations) + 1, count))
+        rows = self.model.low_slopes(state[:size])[1]
+        priors = np.zeros((size + len(rows) + len(self.deviations) + 1, count))
         priors[:size, :size] = self.root
-        priors[size : size + len(slope), :size] = -self.slope_basis / SLOPE_DEVIATION * (slope < LEAST_SLOPE)[:, None]
-        priors[size + len(slope) : -1, size + 9 :] = np.diag(1 / self.deviations)
+        priors[size : size + len(rows), :size] = -rows
+        priors[size + len(rows) : -1, size + 9 :] = np.diag(1 / self.deviations)
         log_light = np.log(2) * 3 * (state[size : size + 9].reshape(3, 3) @ self.saturation)
         priors[-1, size : size + 9] = (self.saturation / log_light[:, None] / self.expected[1]).ravel()
         return np.concatenate([-(cells * counts[..., None]).reshape(-1, count), priors])
