@@ -30,6 +30,9 @@ SPLINE_DEVIATION = 0.012
 #: that is not among them.
 WIDENING = 4.0
 
+#: Least slope df/du, in brightness a stop, that costs nothing, and the standard deviation that weighs a lower one.
+LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
+
 #: Samples at the end of a response that give its slope at white.
 END_SAMPLES = 24
 
@@ -78,6 +81,13 @@ class CurveModel:
         table = self.mean + self.basis @ weights
         brightness = (1 - part[..., 0]) * table[below] + part[..., 0] * table[below + 1]
         return CurveValues(brightness, (table[below + 1] - table[below]) * STEPS, gradient)
+
+    def low_slopes(self, weights: Float64Array) -> tuple[Float64Array, Float64Array]:
+        """Return what slopes lack to `LEAST_SLOPE`, in `SLOPE_DEVIATION`, (L,), and how weights raise the low ones."""
+        basis = np.diff(self.basis[::8], axis=0) * (STEPS / 8)
+        slope = np.diff(self.mean[::8]) * (STEPS / 8) + basis @ weights
+        lacking = np.maximum(LEAST_SLOPE - slope, 0) / SLOPE_DEVIATION
+        return lacking, basis / SLOPE_DEVIATION * (lacking > 0)[:, None]
 
     def weights_of(self, curve: ResponseCurve) -> Float64Array:
         """Return the weights, shape (K,), whose response is nearest to `curve` and not unlikely by the prior."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, STEPS, CurveModel, CurveValues
+from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, CurveModel, CurveValues
 from crfnet_core.types import BoolArray, Float64Array
 
 #: Factor by which every observation is down-weighted, because errors of neighboring blocks are correlated.
@@ -23,9 +23,6 @@ TREND_DEVIATION = 5e-4
 
 #: Standard deviations from which errors of brightness, and of exposures, count linearly.
 HUBER = 2.0
-
-#: Least slope df/du, in brightness a stop, that costs nothing, and the standard deviation that weighs a lower one.
-LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 
 #: 8-bit codes below white from which on the model's value for a white sample costs nothing.
 WHITE_CODES = 0.5
@@ -117,8 +114,6 @@ class _Problem:
         self.seen, self.exposures, self.model = seen, exposures, model
         self.channels = int(seen.channel.max()) + 1
         self.frames = len(exposures)
-        self.slope_basis = np.diff(model.basis[::8], axis=0) * (STEPS / 8)
-        self.slope_mean = np.diff(model.mean[::8]) * (STEPS / 8)
         self.offset_precision = np.linalg.inv(_offset_covariance(self.channels))
         trend = np.zeros((self.frames, self.channels))
         trend[:, self.channels // 2] = (exposures - exposures.mean()) / (np.ptp(exposures) ** 2 * self.frames / 12)
@@ -189,10 +184,7 @@ class _Problem:
 
     def _weight_prior(self, weights: Float64Array) -> tuple[float, Float64Array, Float64Array]:
         """Return the prior of the weights: they are normal, and slopes below `LEAST_SLOPE` cost."""
-        slope = self.slope_mean + self.slope_basis @ weights
-        is_low = slope < LEAST_SLOPE
-        rows = self.slope_basis[is_low] / SLOPE_DEVIATION
-        lacking = (LEAST_SLOPE - slope[is_low]) / SLOPE_DEVIATION
+        lacking, rows = self.model.low_slopes(weights)
         pull = self.model.precision @ weights
         return float(weights @ pull + lacking @ lacking), self.model.precision + rows.T @ rows, rows.T @ lacking - pull
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.calibration import Comparison, MeasuredResponse
+from crfnet_core.calibration import Comparison
 from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.photograph.image_io import RAW_SUFFIXES
@@ -22,7 +22,7 @@ from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles
-from ..report import calibration_document, calibration_provenance
+from ..report import Measured, calibration_document, calibration_provenance
 from .delivery import all_or_none
 from .plan import OutputPlan, plan_files
 
@@ -50,9 +50,7 @@ def is_pairs(paths: Sequence[Path]) -> bool:
     return any(path.suffix.lower() in RAW_SUFFIXES or path.is_dir() for path in paths)
 
 
-def write_calibration(
-    plan: OutputPlan, calibration: MeasuredResponse, comparison: Comparison | None = None
-) -> dict[str, Any]:
+def write_calibration(plan: OutputPlan, calibration: Measured, comparison: Comparison | None = None) -> dict[str, Any]:
     """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
 
     Raise CRFNetError if a file cannot be written, or the LUT length is out of range; the folder is then as it was.
@@ -64,7 +62,9 @@ def write_calibration(
         for path in files.luts:
             write_lut(path, lut)
         if files.sheet:
-            _write_sheet(files.sheet, calibration)
+            from ..report.calibration_sheet import draw_calibration  # loads matplotlib: optional, and slow
+
+            draw_calibration(files.sheet, calibration)
         atomic_write_text(files.report, json_text(document), error=PlateError)
         spaces = [plan.space] if plan.space else []
         write_config(files.config, portable_config(spaces), check={files.color_space: lut})
@@ -85,10 +85,3 @@ def response_to_compare(path: Path) -> ResponseCurve:
         raise PlateError("not_opened", path=path, reason=problem.strerror) from problem
     except (KeyError, OverflowError, TypeError, ValueError, CurveError) as problem:
         raise PlateError("no_response_in_file", path=path) from problem
-
-
-def _write_sheet(path: Path, calibration: MeasuredResponse) -> None:
-    """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
-    from ..report.calibration_sheet import draw_calibration
-
-    draw_calibration(path, calibration)

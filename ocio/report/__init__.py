@@ -3,12 +3,11 @@
 facts        photographs and errors in words, and the provenance that LUT files carry
 words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
-calibration  a measured response in words, as JSON and as provenance; pairs the same of raw files
+calibration  a measured response in words, as JSON and as provenance
 sheet        the picture of an estimate; calibration_sheet of a measured response: both need matplotlib
 """
 
-from . import pairs  # noqa: F401  adds its kind to `calibration`
-from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines
+from .calibration import Measured, calibration_document, calibration_lines, calibration_provenance, comparison_lines
 from .documents import camera_summary, estimate_document, lut_document, plate_document
 from .facts import PhotoFacts, Phrases, provenance
 from .words import (
@@ -25,6 +24,7 @@ from .words import (
 )
 
 __all__ = [
+    "Measured",
     "PhotoFacts",
     "Phrases",
     "calibration_document",

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
-from crfnet_core.calibration import Calibration, Comparison, FrameReport, MeasuredResponse
+from crfnet_core.calibration import Calibration, Comparison, FrameReport, PairCalibration, ShotReport
 from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.types import plain_values
@@ -16,25 +15,45 @@ from crfnet_core.types import plain_values
 from ..output_files import OutputFiles
 from .documents import file_names, rounded
 
+#: A measured response, of a stack or of raw files.
+Measured = Calibration | PairCalibration
 
-@singledispatch
-def calibration_lines(calibration: Any) -> list[str]:
+
+def calibration_lines(calibration: Measured) -> list[str]:
     """Return the measurement and how far to trust it, in plain words: one line each."""
-    raise TypeError(type(calibration))
-
-
-@calibration_lines.register
-def _(calibration: Calibration) -> list[str]:
+    white, fit = _pair_words(calibration) if isinstance(calibration, PairCalibration) else _stack_words(calibration)
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
-    white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
     return [
-        f"{_frames_words(calibration)}.",
+        f"{_source_words(calibration)}.",
         f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale relative to white to"
-        f" {scale:.2f} stop (standard deviations); {white}.",
-        f"The curve explains the frames to {calibration.residual:.1f} of 255 codes (RMS); their exposures were read as"
-        f" {calibration.labels} and are {_largest_offset(calibration):.2f} stop from that at most.",
+        f" {scale:.2f} stop (standard deviations){white}.",
+        fit,
         *(f"Warning: {warning}." for warning in calibration.warnings),
     ]
+
+
+def _stack_words(calibration: Calibration) -> tuple[str, str]:
+    """Return how white of a stack is known, and how well the curve explains it."""
+    white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
+    offsets = [float(frame.offsets[len(frame.offsets) // 2]) for frame in calibration.frames if frame.is_used]
+    fit = (
+        f"The curve explains the frames to {calibration.residual:.1f} of 255 codes (RMS); their exposures were read as"
+        f" {calibration.labels} and are {max(map(abs, offsets)):.2f} stop from that at most."
+    )
+    return f"; {white}", fit
+
+
+def _pair_words(calibration: PairCalibration) -> tuple[str, str]:
+    """Return what was seen of raw files and how white is known, and how well the curve explains them."""
+    low, high = calibration.codes_seen
+    offsets = [shot.offset for shot in calibration.shots]
+    apart = f"; the shots are {np.ptp(offsets):.2f} stop apart at most" if len(offsets) > 1 else ""
+    corner = f" The camera brightens the corners by {calibration.corner:.2f} stop." if calibration.corner > 0.1 else ""
+    return (
+        f". Codes {low:.0f} to {high:.0f} were seen; where white is: {calibration.white_basis}",
+        f"One curve and one color matrix explain the JPEG to {calibration.residual:.1f} of 255 codes (RMS){apart}."
+        f"{corner}",
+    )
 
 
 def comparison_lines(comparison: Comparison) -> list[str]:
@@ -48,49 +67,26 @@ def comparison_lines(comparison: Comparison) -> list[str]:
     ]
 
 
-@singledispatch
-def calibration_provenance(calibration: Any) -> tuple[str, ...]:
+def calibration_provenance(calibration: Measured) -> tuple[str, ...]:
     """Return the comment lines of LUT files: the LUT, its frames, and how far to trust it."""
-    raise TypeError(type(calibration))
-
-
-@calibration_provenance.register
-def _(calibration: Calibration) -> tuple[str, ...]:
+    seen = ""
+    if isinstance(calibration, PairCalibration):
+        seen = ", codes {:.0f} to {:.0f}".format(*calibration.codes_seen)
+    shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     return (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
-        f"Measured from {_frames_words(calibration)}",
-        deviations(calibration),
+        f"Measured from {_source_words(calibration)}{seen}",
+        f"Standard deviations: shape {shape:.3f} stop, scale {scale:.3f} stop",
     )
 
 
-def deviations(calibration: MeasuredResponse) -> str:
-    """Return both standard deviations, for the comments of LUT files."""
-    shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
-    return f"Standard deviations: shape {shape:.3f} stop, scale {scale:.3f} stop"
-
-
-@singledispatch
-def calibration_document(calibration: Any, files: OutputFiles, comparison: Comparison | None = None) -> dict[str, Any]:
+def calibration_document(
+    calibration: Measured, files: OutputFiles, comparison: Comparison | None = None
+) -> dict[str, Any]:
     """Return a measured response, ready for JSON; file names are relative to the folder."""
-    raise TypeError(type(calibration), files, comparison)
-
-
-@calibration_document.register
-def _(calibration: Calibration, files: OutputFiles, comparison: Comparison | None = None) -> dict[str, Any]:
-    own = {
-        "frames": [_frame_document(frame) for frame in calibration.frames],
-        "labels": calibration.labels,
-        "white": rounded(calibration.white),
-        "reaches_white": calibration.reaches_white,
-        "nearest_known_response": rounded(calibration.nearest_known),
-    }
-    return common_document(calibration, files, comparison) | own
-
-
-def common_document(calibration: MeasuredResponse, files: OutputFiles, comparison: Comparison | None) -> dict[str, Any]:
-    """Return the entries of every measured response."""
+    own = _pair_document(calibration) if isinstance(calibration, PairCalibration) else _stack_document(calibration)
     metadata, uncertainty = calibration.metadata, calibration.uncertainty
-    return {
+    common = {
         "kind": "calibration",
         "camera": {"make": metadata.make, "model": metadata.model, "firmware": metadata.software},
         "size": [metadata.width, metadata.height],
@@ -104,6 +100,31 @@ def common_document(calibration: MeasuredResponse, files: OutputFiles, compariso
         "response": {"brightness": plain_values(calibration.curve.brightness)},
         "color_space": files.color_space,
         "files": file_names(files),
+    }
+    return common | own
+
+
+def _stack_document(calibration: Calibration) -> dict[str, Any]:
+    """Return the entries that only a stack has."""
+    return {
+        "frames": [_frame_document(frame) for frame in calibration.frames],
+        "labels": calibration.labels,
+        "white": rounded(calibration.white),
+        "reaches_white": calibration.reaches_white,
+        "nearest_known_response": rounded(calibration.nearest_known),
+    }
+
+
+def _pair_document(calibration: PairCalibration) -> dict[str, Any]:
+    """Return the entries that only raw files have."""
+    return {
+        "method": "raw pairs",
+        "frames": [_shot_document(shot) for shot in calibration.shots],
+        "white_basis": str(calibration.white_basis),
+        "codes_seen": rounded(list(calibration.codes_seen)),
+        "color_matrix": rounded(calibration.matrix),
+        "local_exponent": rounded(calibration.local),
+        "corner_stops": rounded(calibration.corner),
     }
 
 
@@ -122,34 +143,44 @@ def _frame_document(frame: FrameReport) -> dict[str, Any]:
     }
 
 
+def _shot_document(shot: ShotReport) -> dict[str, Any]:
+    """Return the report of a pair for JSON."""
+    return {
+        "name": shot.path.name,
+        "jpeg": shot.jpeg and shot.jpeg.name,
+        "iso": shot.iso,
+        "cells": shot.cells,
+        "offset_stops": rounded(shot.offset),
+        "residual_codes": rounded(shot.residual),
+        "correlation": rounded(shot.correlation),
+        "used": True,
+    }
+
+
 def _parts(values: Mapping[str, float]) -> dict[str, Any]:
     """Return numbers by name, rounded."""
     return {name: rounded(value) for name, value in values.items()}
 
 
-def _frames_words(calibration: Calibration) -> str:
-    """Return the number of frames, their camera and their exposures, in words."""
-    labels = [frame.label for frame in calibration.frames]
-    times = sorted(label.seconds for label in labels if label.seconds)
+def _source_words(calibration: Measured) -> str:
+    """Return the number of files, their camera, the settings that they have in common, and how they differ."""
+    if isinstance(calibration, PairCalibration):
+        count = len(calibration.shots)
+        files = f"{count} raw file{'s' * (count > 1)}"
+        settings: dict[str, list[Any]] = {"ISO {:g}": [shot.iso for shot in calibration.shots]}
+        end = "with its JPEG" if any(shot.jpeg for shot in calibration.shots) else "with the JPEG inside"
+    else:
+        labels = [frame.label for frame in calibration.frames]
+        times = sorted(label.seconds for label in labels if label.seconds)
+        stops = np.ptp([frame.stops for frame in calibration.frames])
+        files = f"{len(labels)} frames"
+        settings = {"ISO {:g}": [label.iso for label in labels], "f/{:.3g}": [label.f_number for label in labels]}
+        end = f"{_time_words(times[0])} to {_time_words(times[-1])} ({stops:.1f} stops)"
     camera = camera_name(calibration.metadata.make, calibration.metadata.model) or "an unnamed camera"
-    fixed = {
-        "ISO {:g}": {label.iso for label in labels},
-        "f/{:.3g}": {label.f_number for label in labels},
-    }
-    settings = [
-        form.format(next(iter(values))) for form, values in fixed.items() if len(values) == 1 and None not in values
-    ]
-    stops = np.ptp([frame.stops for frame in calibration.frames])
-    exposures = f"{_time_words(times[0])} to {_time_words(times[-1])} ({stops:.1f} stops)"
-    return ", ".join([f"{len(labels)} frames of {camera}", *settings, exposures])
+    common = [form.format(values[0]) for form, values in settings.items() if values[0] and len(set(values)) == 1]
+    return ", ".join([f"{files} of {camera}", *common, end])
 
 
 def _time_words(seconds: float) -> str:
     """Return an exposure time as cameras show it."""
     return f"1/{1 / seconds:.0f} s" if seconds < 0.3 else f"{seconds:.3g} s"
-
-
-def _largest_offset(calibration: Calibration) -> float:
-    """Return by how many stops green in the used frames is from their labels at most."""
-    offsets = [float(frame.offsets[len(frame.offsets) // 2]) for frame in calibration.frames if frame.is_used]
-    return max(map(abs, offsets))

@@ -12,12 +12,12 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crfnet_core.calibration import Calibration, MeasuredResponse, PairCalibration
+from crfnet_core.calibration import PairCalibration
 from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
-from . import calibration_lines
+from . import Measured, calibration_lines
 from .sheet import (
     BOTTOM,
     CURVE,
@@ -49,7 +49,7 @@ CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
 _WARNING = VERDICT_INK[Verdict.USABLE]
 
 
-def draw_calibration(path: Path, calibration: MeasuredResponse) -> None:
+def draw_calibration(path: Path, calibration: Measured) -> None:
     """Write the picture of a calibration as PNG; the same input gives the same bytes.
 
     Raise PlateError if that fails.
@@ -60,23 +60,25 @@ def draw_calibration(path: Path, calibration: MeasuredResponse) -> None:
         upper, lower = 0.42, HEIGHT - 0.42 - 0.09
         points = figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper))
         if isinstance(calibration, PairCalibration):
-            _draw_points(
-                points,
-                calibration,
-                CHANNELS[calibration.points[:, 7].astype(int)],
-                "Cells of every shot, over irradiance in stops",
-            )
-            points.tick_params(labelbottom=True)
+            colors = CHANNELS[calibration.points[:, 7].astype(int)]
+            _draw_points(points, calibration, colors, "Cells of every shot, over irradiance in stops")
             for number, (title, column) in enumerate(CAUSES.items()):
                 axes = figure.add_axes((0.56 + number * 0.144, BOTTOM, 0.124, lower))
-                _draw_cause(axes, calibration, column, title, is_first=number == 0)
-        elif isinstance(calibration, Calibration):
-            colors = _frame_colors(calibration)[calibration.points[:, 3].astype(int)]
+                _draw_residuals(axes, calibration, column, colors, title)
+                axes.set_ylabel("Residual (codes)" if number == 0 else "")
+                axes.tick_params(labelleft=number == 0)
+        else:
+            stops = np.array([frame.stops for frame in calibration.frames])
+            place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
+            colors = np.asarray(colormaps[FRAMES](0.9 * place))[calibration.points[:, 3].astype(int)]
             _draw_points(points, calibration, colors, "Points of every frame, dark to bright")
-            _draw_residuals(figure.add_axes((0.56, BOTTOM, 0.412, lower)), calibration, colors)
+            points.tick_params(labelbottom=False)
+            axes = figure.add_axes((0.56, BOTTOM, 0.412, lower))
+            _draw_residuals(axes, calibration, 0, colors, "Irradiance in stops, white = 0")
+            axes.set_xlim(DARKEST, 0.5)
 
 
-def _draw_heading(figure: Figure, path: Path, calibration: MeasuredResponse) -> None:
+def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
     """Draw the camera, both uncertainties, and the warnings."""
     uncertainty = calibration.uncertainty
     name = path.stem.removesuffix("_sheet")
@@ -94,15 +96,15 @@ def _draw_heading(figure: Figure, path: Path, calibration: MeasuredResponse) -> 
     figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
 
 
-def _white_words(calibration: MeasuredResponse) -> str:
+def _white_words(calibration: Measured) -> str:
     """Return how white is known, and of pairs the codes that were seen."""
     if isinstance(calibration, PairCalibration):
         low, high = calibration.codes_seen
         return f"codes {low:.0f} to {high:.0f} seen{DOT}white: {calibration.white_basis}"
-    return "white reached" if getattr(calibration, "reaches_white", False) else "white not reached"
+    return "white reached" if calibration.reaches_white else "white not reached"
 
 
-def _draw_curve(axes: Axes, calibration: MeasuredResponse) -> None:
+def _draw_curve(axes: Axes, calibration: Measured) -> None:
     """Draw the response and gamma 2.2; of pairs, codes that were not seen are dotted."""
     irradiance = np.linspace(0, 1, SAMPLES)
     gamma, brightness = ResponseCurve.gamma().brightness, calibration.curve.brightness
@@ -118,7 +120,7 @@ def _draw_curve(axes: Axes, calibration: MeasuredResponse) -> None:
     plain(axes)
 
 
-def _draw_points(axes: Axes, calibration: MeasuredResponse, colors: Float64Array, title: str) -> None:
+def _draw_points(axes: Axes, calibration: Measured, colors: Float64Array, title: str) -> None:
     """Draw points over their irradiance in stops, and the curve through them."""
     stops, brightness = calibration.points.T[:2]
     axes.scatter(stops, brightness, s=1.5, c=colors, linewidths=0, rasterized=True)
@@ -126,40 +128,17 @@ def _draw_points(axes: Axes, calibration: MeasuredResponse, colors: Float64Array
     axes.plot(dense, calibration.curve.forward(np.exp2(dense)), color=INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(0, 1.02), ylabel="Brightness")
     axes.set_title(title, loc="left", size=9, color=QUIET, pad=5)
-    axes.tick_params(labelbottom=False)
     plain(axes)
 
 
-def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
-    """Draw the residual of every point."""
-    stops, _, residual, _ = calibration.points.T
-    residual = np.clip(255 * residual, -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
-    axes.scatter(stops, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
-    axes.axhline(0, color=INK, linewidth=1)
-    axes.set(xlim=(DARKEST, 0.5), ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL))
-    axes.set(xlabel="Irradiance in stops, white = 0", ylabel="Residual (codes)")
-    plain(axes)
-
-
-def _draw_cause(axes: Axes, calibration: PairCalibration, column: int, title: str, *, is_first: bool) -> None:
-    """Draw the residuals over something that the model may not have explained, and their medians in eight parts."""
-    cause, residual = (
-        calibration.points[:, column],
-        np.clip(255 * calibration.points[:, 2], -LARGEST_RESIDUAL, LARGEST_RESIDUAL),
-    )
-    colors = CHANNELS[calibration.points[:, 7].astype(int)]
+def _draw_residuals(axes: Axes, calibration: Measured, column: int, colors: Float64Array, title: str) -> None:
+    """Draw the residuals over a column of the points; of pairs, also their medians in eight parts of it."""
+    cause = calibration.points[:, column]
+    residual = np.clip(255 * calibration.points[:, 2], -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
     axes.scatter(cause, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
-    parts = np.array_split(cause.argsort(), 8)
-    axes.plot([np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=INK)
-    axes.axhline(0, color=INK, linewidth=0.6)
-    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
-    axes.set_ylabel("Residual (codes)" if is_first else "")
-    axes.tick_params(labelleft=is_first)
+    if isinstance(calibration, PairCalibration):
+        parts = np.array_split(cause.argsort(), 8)
+        axes.plot([np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=INK)
+    axes.axhline(0, color=INK, linewidth=1)
+    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title, ylabel="Residual (codes)")
     plain(axes)
-
-
-def _frame_colors(calibration: Calibration) -> Float64Array:
-    """Return a color for each frame by its exposure, shape (T, 4)."""
-    stops = np.array([frame.stops for frame in calibration.frames])
-    place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
-    return np.asarray(colormaps[FRAMES](0.9 * place))

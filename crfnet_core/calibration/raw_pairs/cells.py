@@ -48,7 +48,7 @@ class Cells:
     is_white: BoolArray  # (N, 3): whether all pixels are white
     is_saturated: BoolArray  # (N,): whether the raw light is, in some channel
     surroundings: Float64Array  # (N,): log2 of the raw light around the cell, less its median over the picture
-    radius: Float64Array  # (N,): distance from the center; 1 at a corner
+    place: Float64Array  # (N, 2): right and down from the center; a corner is 1 away
     tile: IndexArray  # (N,): 0 or 1, a checkerboard over the picture
     shot: IndexArray  # (N,)
 
@@ -80,7 +80,7 @@ def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: 
     light, is_saturated, is_inside = _raw_cells(raw, place, codes.shape, side, (rows, columns))
     logs = np.log2(np.maximum(gaussian_filter(light @ LUMA, ACROSS * SURROUNDINGS, mode="nearest"), 1e-4))
     y, x = np.mgrid[:rows, :columns]
-    radius = np.hypot(x * 2 / (columns - 1) - 1, (y * 2 - rows + 1) / (columns - 1)) / np.hypot(1, rows / columns)
+    position = np.stack([x * 2 - columns + 1, y * 2 - rows + 1], axis=-1) / np.hypot(columns, rows)
     cells = Cells(
         light=light.reshape(-1, 3),
         codes=mean.reshape(-1, 3),
@@ -89,7 +89,7 @@ def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: 
         is_white=(blocks.min(axis=(1, 3)) >= WHITE).reshape(-1, 3),
         is_saturated=is_saturated.ravel(),
         surroundings=(logs - np.median(logs)).ravel(),
-        radius=radius.ravel(),
+        place=position.reshape(-1, 2),
         tile=((y * 6 // rows + x * 8 // columns) % 2).ravel(),
         shot=np.zeros(rows * columns, np.intp),
     )

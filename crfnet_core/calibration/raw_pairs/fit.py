@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from crfnet_core.calibration.curve_model import STEPS, CurveModel
+from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.raw_pairs.cells import Cells
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -22,14 +22,12 @@ HUBER, OUTLIER = 2.0, 6.0
 #: Part of a cell's brightest channel below which another does not count: gamut compression changes it.
 FAINT = 0.25
 
-#: Prior standard deviations: local tone mapping, vignetting at the corner in stops, a shot's exposure in stops.
-LOCAL_DEVIATION, CORNER_DEVIATION, SHOT_DEVIATION = 0.2, 0.5, 0.1
+#: Prior standard deviations: local tone mapping, vignetting at the corner in stops, a gradient from the center to a
+#: corner in stops, a shot's exposure in stops.
+LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION = 0.2, 0.5, 0.1, 0.1
 
 #: Stops by which raw saturation of white lies above the JPEG's white: the prior mean and its standard deviation.
 HEADROOM, HEADROOM_DEVIATION = 0.2, 0.3
-
-#: Least slope df/du, in brightness a stop, that costs nothing, and the standard deviation that weighs a lower one.
-LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 
 #: Brightness from which on the model's value for a white cell costs nothing.
 WHITE_BRIGHTNESS = 1 - 0.5 / 255
@@ -49,6 +47,7 @@ class PairFit:
     matrix: Float64Array  # (3, 3): from balanced raw light to the light of the response, whose white is 1
     local: float  # exponent of the surroundings' light in the gain: 0 without local tone mapping
     corner: float  # stops by which the corner is brightened
+    tilts: Float64Array  # (S, 2): stops a place (see `Cells.place`) by which each shot brightens, right and down
     offsets: Float64Array  # (S,): stops by which each shot is brighter than the first; its own is 0
     covariance: Float64Array  # (K, K): posterior covariance of the weights
     log_light: Float64Array  # (N, 3): log2 of the light of every cell
@@ -90,17 +89,25 @@ def fit_pairs(
 
 
 class _Problem:
-    """The least squares: unknowns are the weights, the matrix row by row, the local term, the corner, the offsets."""
+    """The least squares: unknowns are the weights, the matrix row by row, and the stops that each cause makes.
+
+    Causes are the surroundings, the corner, the tilt of each shot, and the offset of each but the first.
+    """
 
     def __init__(self, cells: Cells, saturation: float, model: CurveModel, headroom: tuple[float, float]) -> None:
         self.cells, self.model, self.expected = cells, model, headroom
         self.saturation = np.full(3, saturation)
         self.size = model.basis.shape[1]
         self.shots = int(cells.shot.max()) + 1
+        own = (cells.shot[:, None] == np.arange(self.shots)).astype(np.float64)
+        tilts = (own[:, :, None] * cells.place[:, None]).reshape(len(own), -1)
+        corner = (cells.place**2).sum(axis=1)
+        self.causes = np.column_stack([cells.surroundings, corner, tilts, own[:, 1:]])
+        others = [TILT_DEVIATION] * tilts.shape[1] + [SHOT_DEVIATION] * (self.shots - 1)
+        self.deviations = np.array([LOCAL_DEVIATION, CORNER_DEVIATION, *others])
+        self.precision = 255 / cells.deviation / np.sqrt(DEFLATION)
         self.mean = model.weights_of(in_camera_mean())
         self.root = np.linalg.cholesky(model.precision).T
-        self.slope_basis = np.diff(model.basis[::8], axis=0) * (STEPS / 8)
-        self.slope_mean = np.diff(model.mean[::8]) * (STEPS / 8)
         codes = cells.codes
         self.chroma = np.ptp(codes, axis=1, keepdims=True) / np.maximum(codes.max(axis=1, keepdims=True), 1) / 0.35
         near_white = cells.is_white & (cells.codes.min(axis=1, keepdims=True) > 200)
@@ -112,12 +119,14 @@ class _Problem:
         light = in_camera_mean().inverse(self.cells.codes / 255)
         known = self.is_open & (self.cells.codes > 20) & (self.cells.light > 1e-4)
         scale = np.exp2(np.median(np.log2(light[known] / self.cells.light[known])))
-        state: Float64Array = np.r_[self.mean, (scale * np.eye(3)).ravel(), np.zeros(2 + self.shots - 1)]
+        state: Float64Array = np.r_[self.mean, (scale * np.eye(3)).ravel(), 0 * self.deviations]
         return state
 
     def packed(self, fit: PairFit) -> Float64Array:
         """Return the unknowns of a fit of cells of the same shots."""
-        state: Float64Array = np.r_[fit.weights, fit.matrix.ravel(), fit.local, fit.corner, fit.offsets[1:]]
+        state: Float64Array = np.r_[
+            fit.weights, fit.matrix.ravel(), fit.local, fit.corner, fit.tilts.ravel(), fit.offsets[1:]
+        ]
         return state
 
     def unpacked(self, state: Float64Array, weight: Float64Array) -> PairFit:
@@ -131,7 +140,8 @@ class _Problem:
             matrix=state[size : size + 9].reshape(3, 3),
             local=float(state[size + 9]),
             corner=float(state[size + 10]),
-            offsets=np.r_[0.0, state[size + 11 :]],
+            tilts=state[size + 11 : size + 11 + 2 * self.shots].reshape(-1, 2),
+            offsets=np.r_[0.0, state[size + 11 + 2 * self.shots :]],
             covariance=np.asarray(np.linalg.inv(jacobian.T @ jacobian)[:size, :size], np.float64),
             log_light=logs,
             residual=np.where((weight > 0) & self.is_open, residual, np.nan),
@@ -145,9 +155,7 @@ class _Problem:
 
     def log_light(self, state: Float64Array) -> Float64Array:
         """Return log2 of the light that the response takes, (N, 3)."""
-        local, corner = state[self.size + 9 : self.size + 11]
-        offsets = np.r_[0.0, state[self.size + 11 :]][self.cells.shot]
-        stops = local * self.cells.surroundings + corner * self.cells.radius**2 + offsets
+        stops = self.causes @ state[self.size + 9 :]
         return np.asarray(np.log2(np.maximum(self.light(state), FLOOR)) + stops[:, None])
 
     def counts(self, state: Float64Array) -> BoolArray:
@@ -171,14 +179,13 @@ class _Problem:
 
     def residuals(self, state: Float64Array, weight: Float64Array) -> Float64Array:
         """Return the residuals of cells, and of the priors, in standard deviations."""
-        cells = self.off(state) * weight * self.scale
+        cells = self.off(state) * weight * self.precision
         weights = state[: self.size]
-        slope = self.slope_mean + self.slope_basis @ weights
         return np.concatenate(
             [
                 cells.ravel(),
                 self.root @ (weights - self.mean),
-                np.maximum(LEAST_SLOPE - slope, 0) / SLOPE_DEVIATION,
+                self.model.low_slopes(weights)[0],
                 state[self.size + 9 :] / self.deviations,
                 [(self.headroom(state) - self.expected[0]) / self.expected[1]],
             ]
@@ -188,35 +195,22 @@ class _Problem:
         """Return the derivatives of `residuals`."""
         size, count = self.size, len(state)
         values = self.model.values(state[:size], self.log_light(state))
-        counts = weight * self.scale * (~self.is_white | (values.brightness < WHITE_BRIGHTNESS))
+        counts = weight * self.precision * (~self.is_white | (values.brightness < WHITE_BRIGHTNESS))
         light = np.maximum(self.light(state), FLOOR)
         cells = np.zeros((*light.shape, count))
         cells[..., :size] = values.gradient
         for channel in range(3):
             columns = slice(size + 3 * channel, size + 3 * channel + 3)
             cells[:, channel, columns] = (values.slope / light)[:, channel, None] / np.log(2) * self.cells.light
-        cells[..., size + 9] = values.slope * self.cells.surroundings[:, None]
-        cells[..., size + 10] = values.slope * self.cells.radius[:, None] ** 2
-        for shot in range(1, self.shots):
-            cells[..., size + 10 + shot] = values.slope * (self.cells.shot == shot)[:, None]
-        slope = self.slope_mean + self.slope_basis @ state[:size]
-        priors = np.zeros((size + len(slope) + self.shots + 2, count))
+        cells[..., size + 9 :] = values.slope[..., None] * self.causes[:, None]
+        rows = self.model.low_slopes(state[:size])[1]
+        priors = np.zeros((size + len(rows) + len(self.deviations) + 1, count))
         priors[:size, :size] = self.root
-        priors[size : size + len(slope), :size] = -self.slope_basis / SLOPE_DEVIATION * (slope < LEAST_SLOPE)[:, None]
-        priors[-2 - self.shots : -1, size + 9 :] = np.diag(1 / self.deviations)
+        priors[size : size + len(rows), :size] = -rows
+        priors[size + len(rows) : -1, size + 9 :] = np.diag(1 / self.deviations)
         log_light = np.log(2) * 3 * (state[size : size + 9].reshape(3, 3) @ self.saturation)
         priors[-1, size : size + 9] = (self.saturation / log_light[:, None] / self.expected[1]).ravel()
         return np.concatenate([-(cells * counts[..., None]).reshape(-1, count), priors])
-
-    @property
-    def scale(self) -> Float64Array:
-        """Expected precision of the cells, (N, 3), in brightness."""
-        return np.asarray(255 / self.cells.deviation / np.sqrt(DEFLATION))
-
-    @property
-    def deviations(self) -> Float64Array:
-        """Prior standard deviations of the local term, the corner and the offsets."""
-        return np.array([LOCAL_DEVIATION, CORNER_DEVIATION, *[SHOT_DEVIATION] * (self.shots - 1)])
 
     def headroom(self, state: Float64Array) -> float:
         """Return the stops by which raw saturation of white lies above white: the mean of the channels."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from crfnet_core.calibration import MeasuredResponse, calibrate_pairs, calibrate_stack, parse_times
+from crfnet_core.calibration import calibrate_pairs, calibrate_stack, parse_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
@@ -20,7 +20,7 @@ def run(arguments: argparse.Namespace) -> None:
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
     seconds = parse_times(arguments.times) if arguments.times else None
     with progress_bar("frames") as progress:
-        calibration: MeasuredResponse
+        calibration: report.Measured
         if pipeline.is_pairs(frames):
             calibration = calibrate_pairs(frames, accept_edited=arguments.accept_edited, progress=progress)
         else:

@@ -111,6 +111,14 @@ def test_a_cropped_jpeg_is_refused(pair):
     assert refused([raw, jpeg]) in ("pair_differs", "pair_cropped")
 
 
+def test_a_gradient_filter_is_refused(pair):
+    raw, jpeg = pair()
+    codes = np.asarray(Image.open(jpeg))
+    gain = np.linspace(0.7, 1, len(codes))[:, None, None]
+    Image.fromarray((codes * gain).astype(np.uint8)).save(jpeg, quality=92)
+    assert refused([raw, jpeg]) == "pair_tilted"
+
+
 def test_a_jpeg_that_a_program_saved_is_measured_only_if_asked(pair):
     raw, jpeg = pair()
     exif = Image.Exif()
