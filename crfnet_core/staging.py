@@ -74,10 +74,15 @@ def remove_abandoned(folder: Path) -> None:
         with suppress(OSError):
             with (temporary / _LOCK).open("ab") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
+                if not _is_there(file, temporary):
+                    continue
                 if (temporary / _EARLIER).exists():  # all of the set is on the disk
                     _name_the_rest(temporary, folder)
                 _put_back(temporary, folder)
-            if not _earlier_files(temporary):
+                is_empty = not _earlier_files(temporary)
+                if is_empty:  # before the lock ends, so that nobody takes up a folder that is about to go
+                    shutil.rmtree(temporary, ignore_errors=True)
+            if is_empty and os.name == "nt":  # which removes no open file
                 shutil.rmtree(temporary, ignore_errors=True)
 
 
@@ -87,11 +92,27 @@ def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
         temporary = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))  # with mode 0700
         with suppress(FileNotFoundError):  # another process took the folder for an abandoned one, and removed it
             file = (temporary / _LOCK).open("wb")
-            with suppress(OSError):  # a file system without locks: nobody will take the folder for abandoned
-                lock(file, wait=False)
-            if (temporary / _LOCK).exists():
+            if _has_lock(file) and _is_there(file, temporary):
                 return temporary, file
             file.close()
+
+
+def _has_lock(file: IO[Any]) -> bool:
+    """Lock a new file, and return whether its folder is ours: False if another process is about to remove it."""
+    try:
+        lock(file, wait=False)
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError:  # a file system without locks: nobody will take the folder for abandoned
+        return True
+    return True
+
+
+def _is_there(file: IO[Any], temporary: Path) -> bool:
+    """Return whether an open file is still the lock of a temporary folder: another process may have removed both."""
+    with suppress(OSError):
+        return os.path.samestat(os.fstat(file.fileno()), (temporary / _LOCK).stat())
+    return False
 
 
 def _renamed(fact: object, temporary: Path, folder: Path) -> object:

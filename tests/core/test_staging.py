@@ -4,6 +4,7 @@ import signal
 import stat
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -184,6 +185,19 @@ def test_temporary_folders_of_killed_runs_are_removed_and_those_of_others_are_no
     remove_abandoned.cache_clear()
     write(tmp_path, ["b.txt"])
     assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
+
+
+def test_a_folder_that_is_just_made_is_not_taken_for_abandoned(tmp_path):
+    """Several frames are written at a time, and each write looks for the remains of killed runs."""
+
+    def write_often(name):
+        for number in range(100):
+            remove_abandoned.__wrapped__(tmp_path)
+            write(tmp_path, [f"{name}{number}"])
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write_often, "abcd"))
+    assert len(content(tmp_path)) == 400
 
 
 def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path):
