@@ -1,6 +1,5 @@
 """The command line of `crfnet`: parsed and refused without importing numpy, so that help is quick.
 
 command_line   every subcommand, its options and its examples
-calibrate      those of `crfnet calibrate`
 parts          options of several subcommands, and the types of their values
 """
