@@ -44,7 +44,6 @@ class FileMetadata:
     interop_index: str = ""  # EXIF InteroperabilityIndex of a JPEG file, such as "R98"
     file_format: str = ""  # "JPEG", "HEIC", "DPX" and so on, as in `image_io.file_kinds`; "movie" for a frame of one
     has_gain_map: bool = False  # whether the picture is the base of an HDR picture
-    alpha: str = ""  # "straight" or "multiplied": whether the colors are stored multiplied by alpha, if there is any
     color: ColorTags = field(default_factory=ColorTags)  # the tags of its primaries and of its encoding
     is_turned: bool = False  # whether the reader has turned the picture upright
 
@@ -73,7 +72,6 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         file_format=file_format,
-        alpha=_alpha(header),
         color=with_named_transfer(header_color_tags(header, file_format, jpeg.interop_index), *names),
     )
 
@@ -82,13 +80,6 @@ def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
     """Return a text in the header on one line of printable characters."""
     value = header_attribute(header, name)
     return one_line(value.rstrip("\0")[:longest]) if isinstance(value, str) else ""
-
-
-def _alpha(header: Any) -> str:
-    """Return how colors are stored with alpha, in a file that was opened to be read as it is stored."""
-    if header.alpha_channel < 0:
-        return ""
-    return "straight" if header.get_int_attribute("oiio:UnassociatedAlpha") else "multiplied"
 
 
 def _number(header: Any, name: str) -> int | None:

@@ -83,7 +83,7 @@ def test_alpha_that_is_straight_by_the_format(tmp_path, name):
     values = read_codes(tmp_path / name)
     np.testing.assert_array_equal(values.alpha, codes[..., 3])
     np.testing.assert_allclose(values.pixels(), codes[..., :3] / 255, atol=1e-6)
-    assert values.metadata.alpha == "straight"
+    assert not values.is_associated
 
 
 def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
