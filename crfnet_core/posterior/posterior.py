@@ -47,8 +47,8 @@ class Posterior(EqualByFields):
         """
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
-        plain_bank = ResponseBank.plain()
-        plain = np.full(len(plain_bank.families), _log(prior.plain / len(plain_bank.families)))
+        count = len(ResponseBank.plain().families)
+        plain = np.full(count, _log(prior.plain / count))
         if evidences:
             likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
             log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
@@ -63,10 +63,8 @@ class Posterior(EqualByFields):
             for family, gain in zip(UNUSUAL, gains, strict=True):
                 logarithms[bank.members(family)] += gain
             unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
-            # So do plain responses; the evidence weighs them in full.
-            each = independent * np.sum([one.ordinary_log_likelihoods(plain_bank.weights) for one in evidences], axis=0)
-            mean = _log_sum(plain + each) - _log_sum(plain)
-            plain += each - mean + _bounded(np.array(mean - average), prior.lookalikes)
+            plain_likelihoods = independent * _plain_log_likelihoods(evidences)
+            plain += _plain_gains(plain, plain_likelihoods, average, prior.lookalikes)
         explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
@@ -141,9 +139,7 @@ class Posterior(EqualByFields):
         """Return the band that holds `BAND` at every irradiance, lower and upper end, shape (2, 1024): Eq. 29."""
         bank, weights = self.bank, self.weights
         if self.plain.any():
-            plain = ResponseBank.plain()
-            bank = ResponseBank(np.concatenate([bank.brightness, plain.brightness]), bank.families + plain.families)
-            weights = np.concatenate([(1 - self.plain.sum()) * weights, self.plain])
+            bank, weights = bank.with_plain, np.concatenate([(1 - self.plain.sum()) * weights, self.plain])
         order, ordered = bank.ordered
         weights = weights[order]
         cumulative = np.cumsum(weights, axis=1) - weights / 2
@@ -174,6 +170,21 @@ def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
     Such photographs add to the likelihood of ordinary responses: the odds x become x / (1 - lookalikes + lookalikes x).
     """
     return log_odds - np.logaddexp(np.log1p(-lookalikes), _log(lookalikes) + log_odds)
+
+
+def _plain_log_likelihoods(evidences: Sequence[Evidence]) -> Float64Array:
+    """Return the logarithms of the likelihoods of plain responses, shape (6,), by the evidence of all photographs."""
+    weights = ResponseBank.plain().weights
+    return np.asarray(np.sum([evidence.ordinary_log_likelihoods(weights) for evidence in evidences], axis=0))
+
+
+def _plain_gains(plain: Float64Array, likelihoods: Float64Array, average: float, lookalikes: float) -> Float64Array:
+    """Return what plain responses gain: together as an unusual family, among themselves by their likelihoods in full.
+
+    `plain` are the logarithms of their prior, and `average` is that of the mean likelihood of ordinary responses.
+    """
+    mean = _log_sum(plain + likelihoods) - _log_sum(plain)
+    return likelihoods - mean + _bounded(np.array(mean - average), lookalikes)
 
 
 def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:

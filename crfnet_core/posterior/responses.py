@@ -60,6 +60,12 @@ class ResponseBank(EqualByFields):
         members = list(Family)
         return cls(brightness.astype(np.float32), tuple(members[number] for number in numbers))
 
+    @cached_property
+    def with_plain(self) -> ResponseBank:
+        """The same responses, and after them the plain ones."""
+        plain = self.plain()
+        return ResponseBank(np.concatenate([self.brightness, plain.brightness]), self.families + plain.families)
+
     def members(self, family: Family) -> BoolArray:
         """Return which responses belong to a family, bool (N,)."""
         return self._members[family]
