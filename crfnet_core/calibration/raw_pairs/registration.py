@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -63,8 +63,7 @@ class Registration:
 
 def register(light: Float32Array, codes: Float32Array) -> Registration:
     """Return where a JPEG's pixels lie in raw light, both gray and of shape (H, W)."""
-    mirrored, quarters = _turn(light, codes)
-    turn = Registration(mirrored, quarters, np.zeros(7), 0.0)
+    turn = _turn(light, codes)
     logs = np.log2(np.maximum(turn.turned(light), 0) + np.float32(2e-3))
     places = [np.r_[np.log([start, start]), np.zeros(5)] for start in STARTS]
     correlation = 0.0
@@ -73,20 +72,20 @@ def register(light: Float32Array, codes: Float32Array) -> Registration:
         fits = [_fit(raw, luma, place) for place in places]
         place, correlation = max(fits, key=lambda fit: fit[1])
         places = [place]
-    return Registration(mirrored, quarters, places[0], correlation)
+    return replace(turn, place=places[0], correlation=correlation)
 
 
-def _turn(light: Float32Array, codes: Float32Array) -> tuple[bool, int]:
-    """Return whether the sensor's picture is mirrored, and by how many quarters it is turned."""
+def _turn(light: Float32Array, codes: Float32Array) -> Registration:
+    """Return the turn of the sensor's picture that is most like the JPEG, without a place."""
     seen = rank_image(_squeezed(codes))
 
-    def likeness(turn: tuple[bool, int]) -> float:
-        turned = np.rot90(light[:, ::-1] if turn[0] else light, turn[1])
-        return float((rank_image(_squeezed(turned)) * seen).sum())
+    def likeness(turn: Registration) -> float:
+        return float((rank_image(_squeezed(turn.turned(light))) * seen).sum())
 
     is_wide = (light.shape[1] >= light.shape[0]) == (codes.shape[1] >= codes.shape[0])
     quarters = (0, 2) if is_wide else (1, 3)
-    return max(((mirrored, turn) for mirrored in (False, True) for turn in quarters), key=likeness)
+    turns = [Registration(mirrored, turn, np.zeros(7), 0.0) for mirrored in (False, True) for turn in quarters]
+    return max(turns, key=likeness)
 
 
 def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Float64Array, float]:
