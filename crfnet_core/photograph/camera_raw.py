@@ -58,9 +58,13 @@ def read_raw(path: Path) -> RawPicture:
                 program=_preview_program(path),
             )
     except (rawpy.LibRawError, OSError) as problem:
-        reason = problem.args[0] if problem.args else problem
-        reason = reason.decode(errors="replace") if isinstance(reason, bytes) else reason
-        raise PhotoError("raw_not_read", path=path, suffix=path.suffix, problem=reason) from None
+        raise PhotoError("raw_not_read", path=path, suffix=path.suffix, problem=libraw_message(problem)) from None
+
+
+def libraw_message(problem: Exception) -> str:
+    """Return the message of an error of LibRaw, which may be bytes."""
+    message = problem.args[0] if problem.args else type(problem).__name__
+    return message.decode(errors="replace") if isinstance(message, bytes) else str(message)
 
 
 def _bayer_light(raw: Any) -> tuple[Float32Array, BoolArray]:

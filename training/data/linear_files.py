@@ -11,6 +11,7 @@ import rawpy
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.camera_raw import libraw_message
 from crfnet_core.photograph.image_io import first_line
 from crfnet_core.photograph.image_io.file_kinds import LINEAR_SIGNATURES, RAW_SUFFIXES
 from crfnet_core.photograph.image_io.header_checks import check_size
@@ -79,7 +80,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
             check_size(path, raw.sizes.width, raw.sizes.height)
             pixels = raw.postprocess(**DEVELOPMENT)
     except rawpy.LibRawError as problem:
-        raise PhotoError(f"{path}: LibRaw cannot develop it ({_reason(problem)}); check the file") from problem
+        raise PhotoError(f"{path}: LibRaw cannot develop it ({libraw_message(problem)}); check the file") from problem
     return _three_channels(pixels)
 
 
@@ -151,9 +152,3 @@ def _positive_luminance(pixels: NDArray[np.float32], path: Path) -> NDArray[np.f
 def _three_channels(pixels: NDArray[Any]) -> NDArray[Any]:
     """Return (H, W, 3) from one of (H, W), (H, W, 1) and (H, W, 3)."""
     return np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
-
-
-def _reason(problem: rawpy.LibRawError) -> str:
-    """Return the message of LibRaw, which may be bytes."""
-    message = problem.args[0] if problem.args else type(problem).__name__
-    return message.decode(errors="replace") if isinstance(message, bytes) else str(message)
