@@ -1,47 +1,20 @@
-"""The original file of a real photograph: its metadata as far as a list has them; whether it was edited or scaled."""
+"""The original file of a real photograph: its metadata as far as a list has them; whether it was edited."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import StrEnum
 
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.metadata.editors import is_editor
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
-from crfnet_core.photograph.metadata.origin import SCALED_BELOW
-
-
-class Editing(StrEnum):
-    """Whether a program that changes tones saved the file."""
-
-    EDITED = "edited"
-    NOT_NAMED = "no editor named"
-    UNKNOWN = "not known"
-
 
 #: Words in `use` of DATA/real_bodies for a file that its publisher developed or edited.
 DEVELOPED = "edited/developed by software"
 
 
-def editing(software: str, *, make: str = "", model: str = "", use: str = "") -> Editing:
-    """Return whether a file was edited, from `software`, `make` and `model` in its EXIF and `use` in DATA/real_bodies.
-
-    The name of a program in `software` or `use` decides. Without one, a file that still names the make or the model of
-    the camera counts as not edited. A file without them has lost its EXIF to some program, so nothing is known.
-    """
-    if DEVELOPED in use or is_editor(software):
-        return Editing.EDITED
-    return Editing.NOT_NAMED if make or model else Editing.UNKNOWN
-
-
-def is_scaled(size: str) -> bool:
-    """Return whether a photograph of "WIDTHxHEIGHT" pixels was made smaller after the camera, by its longest side.
-
-    The lists do not hold the native size of a sensor. The rows of DATA/real_bodies without a crop are just those below
-    `SCALED_BELOW`. A camera's own smaller sizes (M, S) stay on the unscaled side, and a compact of 2002 that records
-    1024 x 768 falls on the other.
-    """
-    return max(int(side) for side in size.split("x")) < SCALED_BELOW
+def is_edited(software: str, use: str) -> bool:
+    """Return whether a program that changes tones saved a file, by `software` in its EXIF and `use` in its list."""
+    return DEVELOPED in use or is_editor(software)
 
 
 def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:

@@ -15,7 +15,7 @@ import numpy as np
 from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.file_origin import Editing, editing, is_original, is_scaled, metadata_of_case
+from training.data.real.file_origin import is_original, metadata_of_case
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -60,8 +60,6 @@ class RealPhotograph:
     grade: str
     caution: str
     is_in_mean: bool
-    editing: Editing
-    is_scaled: bool
     fold: str
     photograph: Path
     measured: Path
@@ -135,7 +133,7 @@ def case_rows(folder: Path) -> list[dict[str, str]]:
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
-    """Return the photograph of a row of DATA/real/cases.csv; only the camera's name shows an editor."""
+    """Return the photograph of a row of DATA/real/cases.csv."""
     return RealPhotograph(
         name=row["id"],
         body=row["camera"],
@@ -143,8 +141,6 @@ def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
         grade=row["grade"],
         caution="" if row["grade"] in TRUSTED_GRADES else f"grade {row['grade']}",
         is_in_mean=True,
-        editing=editing(row["camera"]),
-        is_scaled=is_scaled(row["input_size"]),
         fold=row["camera"],
         photograph=folder / row["input_file"],
         measured=folder / "gt" / f"{row['id']}.csv",
@@ -165,8 +161,6 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         grade=row["grade"],
         caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
         is_in_mean=row["use"] == USED,
-        editing=editing(row["exif_software"], make=row["exif_make"], model=row["exif_model"], use=row["use"]),
-        is_scaled=is_scaled(row["original_size"]),
         fold=row["fold"],
         photograph=folder / row["file"],
         measured=folder / row["gt"],

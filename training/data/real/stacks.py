@@ -19,7 +19,7 @@ from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real.file_origin import Editing, editing, metadata_of_case
+from training.data.real.file_origin import is_edited, metadata_of_case
 from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
@@ -102,9 +102,9 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
 
 def _is_taken(row: Mapping[str, str]) -> bool:
     """Return whether the stack of a row is one of the library: see the head of the module."""
-    is_edited = editing(row["exif_software"], use=row["use"]) is Editing.EDITED
+    is_saved_by_editor = is_edited(row["exif_software"], row["use"])
     is_known = not row["body"].startswith(UNKNOWN_BODY)
-    return is_known and row["grade"] in TRUSTED_GRADES and not is_edited
+    return is_known and row["grade"] in TRUSTED_GRADES and not is_saved_by_editor
 
 
 def _stack(folder: Path, row: Mapping[str, str]) -> Stack:

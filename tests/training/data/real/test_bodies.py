@@ -7,7 +7,6 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import photographs as module
-from training.data.real.file_origin import Editing
 from training.data.real.photographs import RealPhotograph, measured_bodies
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -20,7 +19,7 @@ def photograph(folder, name, body, fold, *, stack="1", kind="camera", raw_file="
     np.savetxt(measured, np.stack([UNIFORM, UNIFORM**0.45], axis=1), delimiter=",", header="e,b")
     path = folder / "photos" / f"{name}.jpg"
     metadata = FileMetadata(raw_file=raw_file)
-    return RealPhotograph(name, body, kind, "A", "", True, Editing.UNKNOWN, False, fold, path, measured, metadata)
+    return RealPhotograph(name, body, kind, "A", "", True, fold, path, measured, metadata)
 
 
 @pytest.fixture
