@@ -139,7 +139,7 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
 def build_own_wheel(version: str, cache: Path) -> Path:
     """Build the wheel that holds `crfnet_core` and `crfnet` in the folder of the downloads, and return its path.
 
-    Its version ends in a hash of its sources, such as 0.1.0+1f3a5b7c: Blender keeps an installed wheel if another of
+    Its version ends in a hash of its sources, such as 0.1.0+h1f3a5b7c: Blender keeps an installed wheel if another of
     the same name and version comes with a newer zip.
 
     The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
@@ -247,10 +247,10 @@ def _setuptools() -> str:
 
 
 def _digest(folder: Path) -> str:
-    """Return eight hexadecimal digits that name the files of a folder and their contents."""
+    """Return a letter, since versions drop leading zeros of numbers, and a hash of a folder's files by eight digits."""
     names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
     lines = "".join(f"{_sha256(folder / name)}  {name}\n" for name in names)
-    return hashlib.sha256(lines.encode()).hexdigest()[:8]
+    return f"h{hashlib.sha256(lines.encode()).hexdigest()[:8]}"
 
 
 def _sha256(path: Path) -> str:
