@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 KEY = "camera_response"
 
 #: The version of its entries.
-LAYOUT = 2
+LAYOUT = 3
 
 #: The entry with the exposure that was applied, in stops; it is set later.
 EXPOSURE = "exposure"
@@ -74,7 +74,7 @@ def is_stored(datablock: Datablock | None) -> bool:
 
 
 def verdict(datablock: Datablock) -> str:
-    """Return the verdict of the stored estimate: "good", "usable" or `DO_NOT_TRUST`."""
+    """Return the verdict of the stored estimate: "usable" or `DO_NOT_TRUST`."""
     return datablock[KEY]["verdict"]
 
 

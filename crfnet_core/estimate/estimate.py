@@ -101,7 +101,6 @@ def estimate_from_evidence(
     is_noise = all(photograph.is_noise for photograph in photographs)
     log_probability = posterior.families[Family.LOG]
     recognition = recognize(levels, log_probability=log_probability, is_noise=is_noise, makes=makes, origins=origins)
-    doubts = _doubts(photographs, origins)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
@@ -110,10 +109,10 @@ def estimate_from_evidence(
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
         families=posterior.families,
-        verdict=_verdict(posterior, recognition, doubts),
+        verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition, doubts, has_own_answer=posterior.answer is not None),
+        warnings=_warnings(photographs, origins, recognition, has_own_answer=posterior.answer is not None),
         model=model,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -142,32 +141,20 @@ def _window_estimates(
     return tuple(estimates)
 
 
-def _doubts(photographs: Sequence[CutPhotograph], origins: Sequence[FileOrigin]) -> list[Notice]:
-    """Return the reasons that keep an estimate from being good; the expected errors do not show them."""
-    doubts, cameras = [], list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
-    if len(cameras) > 1:
-        doubts.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
-    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        doubts.append(Notice("clipped"))
-    return doubts
-
-
-def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[Notice]) -> Verdict:
-    """Return how far to trust the answer of a posterior."""
-    verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior)
-    return Verdict.USABLE if doubts and verdict is Verdict.GOOD else verdict
-
-
 def _warnings(
     photographs: Sequence[CutPhotograph],
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
-    doubts: Sequence[Notice],
     *,
     has_own_answer: bool,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
-    warnings = [*input_warnings(recognition, origins), *doubts]
+    warnings = input_warnings(recognition, origins)
+    cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
+    if len(cameras) > 1:
+        warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
+    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
+        warnings.append(Notice("clipped"))
     if has_own_answer:
         warnings.append(Notice("answer_of_windows"))
     windows = [window for photograph in photographs for window in photograph.windows]

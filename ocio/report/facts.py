@@ -9,7 +9,7 @@ import numpy as np
 from crfnet_core.errors import beside_limits
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
+from crfnet_core.posterior.verdict import USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
 
 
@@ -52,7 +52,7 @@ COMMAND = Phrases()
 def curve_error_words(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    figure = f" (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})" if phrases.has_e_est else ""
+    figure = f" (E_est {estimate.uncertainty:.2f})" if phrases.has_e_est else ""
     return f"{percent:.1f} % of the brightness range{figure}"
 
 
@@ -62,7 +62,7 @@ def shape_error_words(estimate: ResponseEstimate) -> str:
     It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
     """
     shape = estimate.shape_uncertainty
-    return f"{beside_limits(shape, GOOD_STOPS, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
+    return f"{beside_limits(shape, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
 
 
 def expected_errors(estimate: ResponseEstimate) -> str:

@@ -107,7 +107,7 @@ def test_an_uncertainty_gains_what_it_foretells(rng, sign, least, most):
 
 
 def test_answers_that_are_far_off_and_called_usable_are_counted():
-    answers = [(3.5, 0.5, "usable"), (3.5, 0.1, "good"), (1.0, 0.5, "usable"), (1.0, 0.1, "usable")]
+    answers = [(3.5, 0.5, "usable"), (3.5, 0.1, "usable"), (1.0, 0.5, "usable"), (1.0, 0.1, "usable")]
     answers.append((9.0, 0.9, "do not trust"))
     rows = [{"E_est": estimation, "shape": shape, "verdict": verdict} for estimation, shape, verdict in answers]
     assert verdict_figures(Cases({"model": rows}), "model") == {

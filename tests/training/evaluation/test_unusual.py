@@ -40,7 +40,7 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
 
     def estimate(photo, *, network, options):
         asked.append((photo.metadata, options.device))
-        return SimpleNamespace(verdict=Verdict.GOOD if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
+        return SimpleNamespace(verdict=Verdict.USABLE if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
     kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.MESSENGER), [File(scene, "a"), File(scene, "b")]

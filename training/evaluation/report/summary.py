@@ -89,7 +89,7 @@ def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Fig
 
 
 def verdict_figures(cases: Cases, estimator: str) -> Figures:
-    """Return how many answers of a model are accepted ("good" or "usable"), and how many of these are far off."""
+    """Return how many answers of a model are accepted ("usable"), and how many of these are far off."""
     accepted = [row for row in cases.rows[estimator] if row["verdict"] != Verdict.DO_NOT_TRUST]
     far_off = [row for row in accepted if any(row.get(error, 0) > limit for error, limit in FAR_OFF.items())]
     return {"accepted": len(accepted), "refused": len(cases) - len(accepted), "far off": len(far_off)}
