@@ -16,7 +16,7 @@ from crfnet_core.types import Float64Array
 from training.data.curves import DORF_FILE, CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
-from training.data.real.photographs import RealPhotograph, measured_bodies
+from training.data.real.photographs import measured_bodies
 from training.data.splits import held_out_curves
 
 SEED = 2017
@@ -34,11 +34,11 @@ COUNTS = {
 }
 
 
-def make_bank(data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False) -> ResponseBank:
+def make_bank(data: Path, *, without: str | None = None, without_held_out: bool = False) -> ResponseBank:
     """Return the bank of the folder `data`, which holds dorf, real and real_bodies.
 
-    `without` leaves out the bodies of a photograph's fold, as `measured_bodies` does, and `without_held_out` the curves
-    of DoRF that P2 holds out.
+    `without` leaves out the bodies of a fold, as `measured_bodies` does, and `without_held_out` the curves of DoRF that
+    P2 holds out.
     """
     in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
     dorf = read_dorf(data / DORF_FILE)

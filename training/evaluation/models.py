@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.network import ModelConfig, model_folder, packaged_models
+from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder, packaged_models
 
 
 @dataclass(frozen=True)
@@ -44,3 +45,9 @@ class Model:
     def lacks(self, held_out: Sequence[int]) -> bool:
         """Return whether these responses were kept out of training."""
         return set(held_out) <= set(self.held_out_curves)
+
+
+@cache
+def load_network(model: Model, *, threads: int = 0) -> ResponseNetwork:
+    """Return the network of a model, loaded once in a process; `threads` as in `ResponseNetwork.load`."""
+    return ResponseNetwork.load(model.folder, threads=threads)

@@ -9,7 +9,8 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from training.evaluation.measure.figures import curve_figures
-from training.evaluation.measure.table import Cases, Table
+from training.evaluation.measure.table import Table
+from training.evaluation.report.cases import Cases
 
 SETTINGS = {"seed": 1, "test_set": "abc"}
 
@@ -33,7 +34,7 @@ def again(table, *, settings=SETTINGS, code="c"):
 def test_rows_come_back_in_the_order_asked_for(table):
     rows = again(table).rows("P0", {"model": "123"}, ["c", "a"])["model"]
     assert [one["E_est"] for one in rows] == [0.25, 0.0]
-    assert table.baselines("P0") == ["gamma 2.2"]
+    assert table.baselines("P0") == {"gamma 2.2": ""}
 
 
 def test_rows_of_another_model_have_to_be_measured(table):

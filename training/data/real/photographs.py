@@ -49,7 +49,7 @@ class RealPhotograph:
     grade: how well the response was measured: A, B or C
     caution: why the photograph does not count in the means; empty where it counts
     is_in_mean: whether its response is part of the mean of the other bodies
-    fold: bodies of one fold are left out of a mean together
+    fold: bodies of one fold are left out of a mean together; its name is of one folder only
     photograph, measured: the files of the photograph and of its response
     metadata: of the original file, where `photograph` is not the original and has lost it
     """
@@ -101,13 +101,13 @@ class Body:
     responses: tuple[ResponseCurve, ...]
 
 
-def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
+def measured_bodies(data: Path, *, without: str | None = None) -> list[Body]:
     """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
 
-    The fold of the photograph `without` is left out, and every body of the models in this fold, in both folders.
+    The fold `without` is left out, and every body of the models in this fold, in both folders.
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
-    left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}
+    left_out = {model_key(photograph) for photograph in photographs if photograph.fold == without}
     kept = [
         photograph
         for photograph in photographs
@@ -161,16 +161,11 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         grade=row["grade"],
         caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
         is_in_mean=row["use"] == USED,
-        fold=row["fold"],
+        fold=f"fold {row['fold']}",
         photograph=folder / row["file"],
         measured=folder / row["gt"],
         metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
     )
-
-
-def _shares_fold(photograph: RealPhotograph, other: RealPhotograph) -> bool:
-    """Return whether two photographs are of one folder and one fold."""
-    return photograph.photograph.parents[1] == other.photograph.parents[1] and photograph.fold == other.fold
 
 
 def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:

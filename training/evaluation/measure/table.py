@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -67,16 +67,15 @@ class Table:
         """Return whether this row has to be measured."""
         return (protocol, photograph, estimator, model) not in self._rows
 
-    def baselines(self, protocol: str) -> list[str]:
-        """Return the names of the baselines of a protocol, in the order of measuring."""
+    def baselines(self, protocol: str) -> dict[str, str]:
+        """Return the names of the baselines of a protocol, in the order of measuring, each with its empty model."""
         rows = self._rows.values()
-        return list(dict.fromkeys(row["estimator"] for row in rows if row["protocol"] == protocol and not row["model"]))
+        return {row["estimator"]: "" for row in rows if row["protocol"] == protocol and not row["model"]}
 
     def rows(self, protocol: str, estimators: dict[str, str], photographs: Iterable[str]) -> dict[str, list[Row]]:
-        """Return estimator -> its rows of a protocol, in the order of `photographs`.
+        """Return estimator -> its rows on `photographs`, all measured, in their order.
 
-        `estimators`: name of an estimator -> head of its model's hash, empty for baselines. `photographs`: names of
-        photographs, all measured.
+        `estimators`: name of an estimator -> head of its model's hash, empty for baselines.
         """
         names = list(photographs)
         return {
@@ -90,40 +89,6 @@ class Table:
     def _append(self, rows: Iterable[Row]) -> None:
         with self.path.open("a", encoding="utf-8") as file:
             file.writelines(json.dumps(row) + "\n" for row in rows)
-
-
-class Cases:
-    """The rows of several estimators on the same photographs, side by side.
-
-    rows: estimator -> its rows on the N photographs, in one order
-    """
-
-    def __init__(self, rows: dict[str, list[Row]]) -> None:
-        self.rows = rows
-
-    @property
-    def first(self) -> list[Row]:
-        """The rows of the first estimator: for the columns that belong to the photograph."""
-        return next(iter(self.rows.values()))
-
-    def __len__(self) -> int:
-        """Return the number of photographs."""
-        return len(self.first)
-
-    def part(self, index: Sequence[int]) -> Cases:
-        """Return the photographs at some positions."""
-        return Cases({name: [rows[number] for number in index] for name, rows in self.rows.items()})
-
-    def groups(self, column: str) -> dict[Any, list[int]]:
-        """Return value of a column -> positions of the photographs with this value, sorted by value."""
-        groups: dict[Any, list[int]] = {value: [] for value in sorted({row[column] for row in self.first})}
-        for number, row in enumerate(self.first):
-            groups[row[column]].append(number)
-        return groups
-
-    def joined(self, other: Cases) -> Cases:
-        """Return the photographs of both, of the estimators that both have."""
-        return Cases({name: rows + other.rows[name] for name, rows in self.rows.items() if name in other.rows})
 
 
 def code_digest(root: Path = Path(__file__).parents[3]) -> str:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.real import POOLED
 from training.evaluation.measure.simulated import PAPER
-from training.evaluation.measure.table import Cases
 from training.evaluation.plan import RESOLUTIONS
 from training.evaluation.report import paper
-from training.evaluation.report.bootstrap import Resampling
+from training.evaluation.report.cases import Cases
 from training.evaluation.report.document import ReportRow
 from training.evaluation.report.summary import (
     Figures,
@@ -19,8 +17,6 @@ from training.evaluation.report.summary import (
     difference_figures,
     error_figures,
     mean_figures,
-    of_bodies,
-    of_scenes,
     partial_figures,
     reliability_figures,
     verdict_figures,
@@ -31,29 +27,27 @@ from training.evaluation.report.summary import (
 POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
 
 
-def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of P0 or P2: of all photographs, by exposure, and by kind of scene."""
-    weights = of_scenes(cases, seed=seed)
-    yield from _errors(protocol, "", cases, weights, list(cases.rows), compared=models)
+def clean_rows(protocol: str, cases: Cases, models: Sequence[str]) -> Iterator[ReportRow]:
+    """Yield the figures of P0 or P2: of all photographs, by exposure, by kind of scene; and P5."""
+    yield from _errors(protocol, "", cases, list(cases.rows), compared=models)
     for column in ("exposure", "kind"):
         for name, index in cases.groups(column).items():
-            subset = weights.subset(index)
-            yield from _errors(f"{protocol} by {column}", str(name), cases.part(index), subset, [*models, GAMMA])
+            yield from _errors(f"{protocol} by {column}", str(name), cases.part(index), [*models, GAMMA])
+    yield from reliability_rows(protocol, cases, models)
 
 
-def stress_rows(conditions: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
+def stress_rows(conditions: dict[str, Cases]) -> Iterator[ReportRow]:
     """Yield the figures of the protocol "paper" under every condition, the first of which is clean, and the paper's.
 
     Resolutions are compared with the first of them, other conditions with clean.
     """
     clean = next(iter(conditions.values()))
     for group, cases in conditions.items():
-        weights = of_scenes(cases, seed=seed)
         base = conditions.get(RESOLUTIONS[0].name, cases) if group.startswith("resolution") else clean
         for name in cases.rows:
-            figures = error_figures(cases, weights, name) | partial_figures(cases, weights, name)
+            figures = error_figures(cases, name) | partial_figures(cases, name)
             if name in base.rows:
-                figures |= change_figures(cases, base, weights, name)
+                figures |= change_figures(cases, base, name)
             yield _row(PAPER, group, name, cases, figures)
         if group in paper.STRESS:
             error = paper.STRESS[group].estimation
@@ -62,19 +56,16 @@ def stress_rows(conditions: dict[str, Cases], *, seed: int) -> Iterator[ReportRo
             yield _row(PAPER, group, paper.PAPER, cases, figures)
 
 
-def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of the real photographs that count and of all, and by kind of body."""
+def real_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[ReportRow]:
+    """Yield the figures of the real photographs that count and of all, by kind of body; and P5."""
     counted = without_caution(cases)
     for table, part in ((protocol, counted), (f"{protocol}, with caution", cases)):
-        weights = of_bodies(part, seed=seed)
-        for row in _errors(table, "", part, weights, list(part.rows), compared=[*ways, OTHER_BODIES]):
-            if (way := row["estimator"]) in ways:
-                row |= verdict_figures(part, way) | weight_figures(part, way, seed=seed)
-            yield row | _bodies(part)
+        for row in _errors(table, "", part, list(part.rows), compared=[*ways, OTHER_BODIES]):
+            way = row["estimator"]
+            yield row | (verdict_figures(part, way) | weight_figures(part, way) if way in ways else {})
     for kind, index in counted.groups("kind").items():
-        part = counted.part(index)
-        for row in _errors(f"{protocol} by kind", kind, part, of_bodies(part, seed=seed), list(part.rows)):
-            yield row | _bodies(part)
+        yield from _errors(f"{protocol} by kind", kind, counted.part(index), list(counted.rows))
+    yield from reliability_rows(protocol, counted, ways)
 
 
 def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[ReportRow]:
@@ -88,23 +79,21 @@ def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[Repo
             yield _row(f"{protocol} by body", first["body"], name, part, figures)
 
 
-def pooled_rows(table: str, cases: Cases, models: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
+def pooled_rows(table: str, cases: Cases, models: Sequence[str]) -> Iterator[ReportRow]:
     """Yield the figures of the bodies of which at least so many photographs were estimated together."""
-    counts = Counter(row["body key"] for row in cases.first)
+    bodies = cases.groups("body key").values()
     names = [name for model in models for name in (model + POOLED, model)]
     for group, least in POOLED_GROUPS.items():
-        part = cases.part([number for number, row in enumerate(cases.first) if counts[row["body key"]] >= least])
+        part = cases.part(sorted(number for body in bodies if len(body) >= least for number in body))
         if len(part):
-            for row in _errors(table, group, part, of_bodies(part, seed=seed), [*names, OTHER_BODIES]):
-                yield row | _bodies(part)
+            yield from _errors(table, group, part, [*names, OTHER_BODIES])
 
 
-def reliability_rows(measured: dict[str, tuple[Cases, Sequence[str]]]) -> Iterator[ReportRow]:
-    """Yield how well uncertainties foretell errors (P5); `measured` holds photographs and models of each protocol."""
+def reliability_rows(protocol: str, cases: Cases, estimators: Sequence[str]) -> Iterator[ReportRow]:
+    """Yield how well the uncertainties of models foretell their errors (P5)."""
     for error in ("E_est", "shape"):
-        for protocol, (cases, names) in measured.items():
-            for name in names:
-                yield _row(f"P5 {error}", protocol, name, cases, reliability_figures(cases, error, name))
+        for name in estimators:
+            yield _row(f"P5 {error}", protocol, name, cases, reliability_figures(cases, error, name))
 
 
 def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
@@ -120,31 +109,21 @@ def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
 
 def without_caution(cases: Cases) -> Cases:
     """Return the photographs that count in the means."""
-    return cases.part([number for number, row in enumerate(cases.first) if not row["caution"]])
+    return cases.part(cases.groups("caution").get("", []))
 
 
 def _errors(
-    table: str,
-    group: str,
-    cases: Cases,
-    weights: Resampling,
-    estimators: Sequence[str],
-    *,
-    compared: Sequence[str] = (),
+    table: str, group: str, cases: Cases, estimators: Sequence[str], *, compared: Sequence[str] = ()
 ) -> Iterator[ReportRow]:
-    """Yield the errors of estimators, and of the first of `compared` less each other of them."""
+    """Yield the errors of estimators, and of the first of `compared` less each other of them; and how many bodies."""
+    bodies = {"bodies": len(cases.groups("body key"))} if cases.is_real else {}
     for name in estimators:
-        figures = error_figures(cases, weights, name)
+        figures = error_figures(cases, name)
         if name in compared[1:]:
-            figures |= difference_figures(cases, weights, compared[0], name)
-        yield _row(table, group, name, cases, figures)
+            figures |= difference_figures(cases, compared[0], name)
+        yield _row(table, group, name, cases, figures | bodies)
 
 
 def _row(table: str, group: str, estimator: str, cases: Cases, figures: Figures) -> ReportRow:
     """Return a row of the report."""
     return {"table": table, "group": group, "estimator": estimator, "photographs": len(cases)} | figures
-
-
-def _bodies(cases: Cases) -> Figures:
-    """Return the number of bodies."""
-    return {"bodies": len({row["body key"] for row in cases.first})}
