@@ -12,7 +12,7 @@ from crfnet_core.posterior.responses import LEAST_IRRADIANCE
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, geometric_median
-from training.data.real.photographs import Body
+from training.data.real_photographs import Body
 
 #: The kinds of bodies that have a center of their own.
 KINDS = ("phone", "compact", "camera")

@@ -16,7 +16,7 @@ from crfnet_core.types import Float64Array
 from training.data.curves import DORF_FILE, CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
-from training.data.real.photographs import measured_bodies
+from training.data.real_photographs import measured_bodies
 from training.data.splits import held_out_curves
 
 SEED = 2017

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
-from training.data.real.photographs import RealPhotograph, real_photographs
+from training.data.real_photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure import unusual

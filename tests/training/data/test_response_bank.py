@@ -6,7 +6,7 @@ scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extr
 from crfnet_core.posterior import Family, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from training.data import response_bank
-from training.data.real.photographs import Body
+from training.data.real_photographs import Body
 from training.data.response_bank import COUNTS, make_bank, write_bank
 
 UNIFORM = np.linspace(0, 1, 1024)

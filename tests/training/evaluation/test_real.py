@@ -15,7 +15,7 @@ from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.posterior import IN_CAMERA, Posterior, Prior
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
-from training.data.real.photographs import real_photographs
+from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
 from training.evaluation.measure.real import (
     bank_without,

@@ -20,7 +20,7 @@ from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.photographs import RealPhotograph
+from training.data.real_photographs import RealPhotograph
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import (
     GAMMA,

@@ -9,7 +9,7 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from training.data.real.photographs import REAL, REAL_BODIES
+from training.data.real_photographs import REAL, REAL_BODIES
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER
 from training.evaluation.report import paper

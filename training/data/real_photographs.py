@@ -6,7 +6,7 @@ No model is trained on the pixels. A prior may be made from the responses, out o
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,8 +14,8 @@ import numpy as np
 
 from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.file_origin import is_original, metadata_of_case
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -159,13 +159,45 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         body=row["body"],
         kind=row["kind"],
         grade=row["grade"],
-        caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
+        caution=caution(row),
         is_in_mean=row["use"] == USED,
         fold=f"fold {row['fold']}",
         photograph=folder / row["file"],
         measured=folder / row["gt"],
         metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
     )
+
+
+def caution(row: Mapping[str, str]) -> str:
+    """Return why the photograph of a row of DATA/real_bodies/cases.csv does not count; empty where it counts."""
+    return "" if row["use"] == USED else row["use"].removeprefix(CAUTION)
+
+
+def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
+    """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
+
+    The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
+    quantization tables. The size in EXIF, the profile and the XMP history are lost, except where the photograph is the
+    original byte for byte (`is_original`): `read_photo` finds them.
+    """
+    jpeg = read_jpeg_header(crop)
+    width, height = (int(side) for side in row["original_size"].split("x"))
+    return FileMetadata(
+        width=width,
+        height=height,
+        make=row["exif_make"].strip(),
+        model=row["exif_model"].strip(),
+        software=row["exif_software"].strip(),
+        iso=round(float(row["iso"])) if row["iso"] else None,
+        luma_table=jpeg.luma_table,
+        chroma_table=jpeg.chroma_table,
+        file_format="JPEG",
+    )
+
+
+def is_original(row: Mapping[str, str]) -> bool:
+    """Return whether the photograph of a row is the original file: the larger ones are WebP."""
+    return not row["file"].endswith(".webp")
 
 
 def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:
