@@ -74,7 +74,7 @@ def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *,
 
 
 @contextmanager
-def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
+def sheet_figure(path: Path) -> Iterator[Figure]:
     """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes.
 
     Raise PlateError if the file cannot be written.
@@ -86,7 +86,7 @@ def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
         figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
         FigureCanvasAgg(figure)
         yield figure
-        with atomic_write(path, overwrite=overwrite, error=PlateError) as temporary:
+        with atomic_write(path, error=PlateError) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
 
 

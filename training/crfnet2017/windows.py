@@ -17,7 +17,7 @@ from torch import Tensor
 
 from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE
 from training.crfnet2017.augmentation import augmented
-from training.data.curves import DORF_FILE, read_dorf
+from training.data.curves import read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
@@ -76,7 +76,7 @@ class Windows:
 def read_splits(data: Path) -> dict[str, TrainingScenes]:
     """Return the splits "train" and "validation" of the scenes in the folder `data`, with the responses of DoRF."""
     scenes = {split: read_scenes(data / "linear", split) for split in ("train", "validation")}
-    curves, luminance = read_dorf(data / DORF_FILE), reference_luminance(scenes["train"])
+    curves, luminance = read_dorf(data), reference_luminance(scenes["train"])
     exposures = torch.tensor([automatic_exposure(curve, luminance) for curve in curves], dtype=torch.float32)
     responses = torch.from_numpy(curves).float()
     return {

@@ -27,9 +27,9 @@ DrawResponse = Callable[[np.random.Generator], Float64Array]
 HEADROOM = (0.4, 1.1)
 
 
-def read_dorf(path: Path) -> Float64Array:
-    """Return the 201 measured responses of DoRF, shape (201, 1024), at uniform irradiances."""
-    return np.asarray(scipy.io.loadmat(path)["B"], dtype=np.float64)
+def read_dorf(data: Path) -> Float64Array:
+    """Return the 201 measured responses of DoRF in a data folder, shape (201, 1024), at uniform irradiances."""
+    return np.asarray(scipy.io.loadmat(data / DORF_FILE)["B"], dtype=np.float64)
 
 
 def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:

@@ -22,7 +22,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help=f"folder with {DORF_FILE} and {EMOR_FILE}")
     data = parser.parse_args().data
-    basis = EmorBasis.from_curves(read_dorf(data / DORF_FILE))
+    basis = EmorBasis.from_curves(read_dorf(data))
     published = read_published(data / EMOR_FILE)
     cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
     print("|cosine| with the published components:", np.round(cosines, 5))

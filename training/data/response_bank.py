@@ -13,7 +13,7 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import BANK_FILE, Family, ResponseBank
 from crfnet_core.posterior.responses import STORED_STEPS
 from crfnet_core.types import Float64Array
-from training.data.curves import DORF_FILE, CurveSource, read_dorf
+from training.data.curves import CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
 from training.data.real_photographs import measured_bodies
@@ -41,7 +41,7 @@ def make_bank(data: Path, *, without: str | None = None, without_held_out: bool 
     P2 holds out.
     """
     in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
-    dorf = read_dorf(data / DORF_FILE)
+    dorf = read_dorf(data)
     if without_held_out:
         dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
     film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)

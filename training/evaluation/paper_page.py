@@ -26,7 +26,7 @@ from crfnet_core.response.curve import ResponseCurve
 from training.data.curves import IRRADIANCE
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER, PRIOR, WAYS, simulated_photo
-from training.evaluation.measure.table import TABLE_FILE, Table, code_digest
+from training.evaluation.measure.table import TABLE_FILE, Table
 from training.evaluation.models import Model, load_network
 from training.evaluation.plan import SEED, TestPhotograph, clean_photographs
 from training.evaluation.report import paper
@@ -230,7 +230,7 @@ def main() -> None:
     parser.add_argument("--page", type=Path, required=True, help="the page to write")
     options = parser.parse_args()
     report = read_report(options.out / "report.json")
-    table = Table(options.out / TABLE_FILE, {"seed": SEED, "test_set": report.settings["test_set"]}, code_digest())
+    table = Table(options.out / TABLE_FILE, {"seed": SEED, "test_set": report.settings["test_set"]})
     atomic_write_text(options.page, page_text(report), overwrite=True)
     draw_stress(options.page.with_name("PAPER-stress.png"), report)
     draw_curves(options.page.with_name("PAPER-curves.png"), report, options.data, table)

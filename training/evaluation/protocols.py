@@ -15,7 +15,7 @@ from training.evaluation.baselines import GAMMA
 from training.evaluation.measure import unusual
 from training.evaluation.measure.real import POOLED, measure_real, pooled_groups, ways_of
 from training.evaluation.measure.simulated import PAPER, WAYS, Job, measure_simulated
-from training.evaluation.measure.table import TABLE_FILE, Table, code_digest
+from training.evaluation.measure.table import TABLE_FILE, Table
 from training.evaluation.models import Model
 from training.evaluation.plan import CLEAN, CONDITIONS, SEED, clean_photographs, stress_photographs
 from training.evaluation.report import rows
@@ -71,7 +71,7 @@ def evaluate(evaluation: Evaluation) -> Report:
     """
     _check(evaluation)
     header = {"seed": SEED, "test_set": evaluation.test_set.digest}
-    table = Table(evaluation.out / TABLE_FILE, header, code_digest())
+    table = Table(evaluation.out / TABLE_FILE, header)
     chosen = [run for name, run in PROTOCOLS.items() if name in evaluation.protocols]
     report = Report(
         settings={"photographs": evaluation.photographs} | header,

@@ -75,10 +75,10 @@ def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
     return float(2**low)
 
 
-def reference_luminance(scenes: list[Scene], *, each: int = 64) -> Float32Array:
-    """Return the luminance of `each` evenly spread samples of every scene, for `automatic_exposure`."""
+def reference_luminance(scenes: list[Scene]) -> Float32Array:
+    """Return the luminance of 64 evenly spread samples of every scene, for `automatic_exposure`."""
     luminances = [(scene.pixels.reshape(-1, 3) @ LUMINANCE) for scene in scenes]
-    return np.concatenate([luminance[:: max(1, len(luminance) // each)][:each] for luminance in luminances])
+    return np.concatenate([luminance[:: max(1, len(luminance) // 64)][:64] for luminance in luminances])
 
 
 def sensor_light(

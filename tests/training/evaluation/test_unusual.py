@@ -24,14 +24,14 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
         return SimpleNamespace(verdict=Verdict.GOOD if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
-    model, table = Model.find(str(fixed_model)), Table(tmp_path / "table", {}, "c")
+    model, table = Model.find(str(fixed_model)), Table(tmp_path / "table", {})
     measure_unusual(files, [model], table)
     stripped, expected = FileMetadata(file_format="PNG"), []
     for kind in UnusualKind:
         written = [(WRITTEN[kind], None)] if kind in WRITTEN else []
         expected += [(stripped, None), *written, (stripped, Device.CAMERA)]
     assert asked == expected * 2
-    measure_unusual(files, [model], Table(tmp_path / "table", {}, "c"))
+    measure_unusual(files, [model], Table(tmp_path / "table", {}))
     assert len(asked) == len(expected) * 2
     names = [label(file, kind) for file in files for kind in UnusualKind]
     cases = Cases(table.rows("P6", dict.fromkeys(ways_of("fixed_model"), model.key), names))

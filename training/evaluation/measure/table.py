@@ -42,11 +42,10 @@ class Table:
 
     path: the file; made where absent
     settings: what every row depends on
-    code: hash of the measuring code
     """
 
-    def __init__(self, path: Path, settings: dict[str, Any], code: str) -> None:
-        self.path = path
+    def __init__(self, path: Path, settings: dict[str, Any]) -> None:
+        self.path, code = path, code_digest()
         self._rows: dict[tuple[str, ...], Row] = {}
         path.parent.mkdir(parents=True, exist_ok=True)
         header, *rows = _lines(path) or [settings | {"code": code}]
@@ -91,12 +90,11 @@ class Table:
             file.writelines(json.dumps(row) + "\n" for row in rows)
 
 
-def code_digest(root: Path = Path(__file__).parents[3]) -> str:
+def code_digest() -> str:
     """Return a short hash of the measuring code, in a checkout of the repository."""
-    digest = hashlib.sha256()
-    for pattern in MEASURING_CODE:
-        for path in sorted(root.glob(pattern)):
-            digest.update(path.read_bytes())
+    root, digest = Path(__file__).parents[3], hashlib.sha256()
+    for path in (path for pattern in MEASURING_CODE for path in sorted(root.glob(pattern))):
+        digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
