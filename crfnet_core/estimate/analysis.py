@@ -1,7 +1,5 @@
 """From a photograph to its windows, and from the windows to evidence: all that an estimate needs of the pixels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 

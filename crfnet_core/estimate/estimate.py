@@ -3,8 +3,6 @@
 `estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ A new cue is a function of `Samples` and a row at the end of `CUES`; models that
 before it. The network of `training` unpacks the vector with the same table, and docs/METHOD.md prints it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 It needs matplotlib, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager

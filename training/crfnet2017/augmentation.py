@@ -4,8 +4,6 @@ Blends of two scenes, mirroring, transposition, permuted channels, white balance
 changes what the response does; the strengths are ours.
 """
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor
 

@@ -1,7 +1,5 @@
 """Recipes for the paper's network: optimizer, learning rate, batch and length of both stages."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The two stages of the training: tell the known responses apart, then estimate EMoR weights."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ Two stages (CRF-net paper, Sec. 3.3): to tell the 201 responses of DoRF apart an
 11 EMoR weights. The same command goes on with an interrupted run.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io

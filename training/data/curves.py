@@ -1,7 +1,5 @@
 """Camera responses to train and measure on: DoRF, in-camera base curves, and mixtures of each."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Compute crfnet_core/data/emor.npz from the DoRF curves: ``python -m training.data.emor_basis --data DIR``."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -5,8 +5,6 @@ SHA-256, and how it is used. The files themselves are no part of the repository.
 data folder with the manifest instead: it lists the files that are absent, altered or unlisted, and returns 2 if any.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import hashlib

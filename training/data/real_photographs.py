@@ -3,8 +3,6 @@
 No model is trained on the pixels. A prior may be made from the responses, out of fold wherever it is measured.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The bank of responses that the posterior weighs: ``python -m training.data.response_bank --data DIR``."""
 
-from __future__ import annotations
-
 import argparse
 from io import BytesIO
 from pathlib import Path

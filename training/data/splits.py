@@ -4,8 +4,6 @@ Scenes are split in `training.data.scenes`. Curves are held out by whole groups,
 equal.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -8,8 +8,6 @@ that the table has are not measured again. With --quick the repository's own lig
 P4 measures DATA/real and, where it exists, DATA/real_bodies.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from pathlib import Path

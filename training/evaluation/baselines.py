@@ -1,7 +1,5 @@
 """Baselines: guesses that ignore the photograph, and oracles that choose by the true response."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -8,8 +8,6 @@ The second command reads OUT/report.json and the table beside it, and draws PAPE
 the page. The first model is the default, the second the paper's network.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

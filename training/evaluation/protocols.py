@@ -1,7 +1,5 @@
 """Run protocols one after the other: each measures what the table lacks, and sums it up."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

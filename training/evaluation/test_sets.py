@@ -1,7 +1,5 @@
 """Test sets: scenes, responses, and the exposure s_crf that belongs to each response."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property

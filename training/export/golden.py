@@ -1,7 +1,5 @@
 """Golden predictions: what PyTorch answers for windows of the bundled plate, to compare onnxruntime with."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -4,8 +4,6 @@ The report is the report.json of `training.evaluation`. Its overall figures go i
 the model card.
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import asdict, replace
 from pathlib import Path

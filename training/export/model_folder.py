@@ -4,8 +4,6 @@ The steps: the graph (`onnx_graph`), the golden predictions and the parity with 
 record of the run beside it.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

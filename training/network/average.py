@@ -6,8 +6,6 @@ ICML 2022. A mean with the network before also keeps what the later run forgets:
 models", CVPR 2022.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Sequence

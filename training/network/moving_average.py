@@ -1,7 +1,5 @@
 """The moving average of the weights of a training, which is what a run yields (Polyak & Juditsky, 1992)."""
 
-from __future__ import annotations
-
 from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 

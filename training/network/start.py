@@ -1,7 +1,5 @@
 """Start a training from the weights of another run or of a packaged model."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import onnx

@@ -1,7 +1,5 @@
 """Train the photograph network on shards of statistics: ``python -m training.network.train --shards DIR --run DIR``."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 from dataclasses import asdict, dataclass

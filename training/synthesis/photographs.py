@@ -1,7 +1,5 @@
 """Training photographs: windows of a scene as random cameras would have recorded them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The whole command line of `crfnet`; `parts` has the options that subcommands share."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`crfnet calibrate`: the response of a camera, measured from an exposure stack, or from raw files and their JPEGs."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Measure real photographs (P4), each alone and several of one body together, as the product reads them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cache, partial
 from itertools import product

@@ -1,7 +1,5 @@
 """Measure simulated photographs (P0, P2, paper) with every model and baseline, on several processes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace

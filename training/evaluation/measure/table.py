@@ -1,7 +1,5 @@
 """The table of an evaluation: one row for each photograph and estimator, in one file of JSON lines."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable

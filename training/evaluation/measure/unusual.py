@@ -1,7 +1,5 @@
 """Measure P6: pictures that must be refused, every kind of every test scene, and whether a model accepts them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

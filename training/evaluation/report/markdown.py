@@ -1,7 +1,5 @@
 """report.md: the text of the file report.md beside this module, filled with the tables of a report."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """The rows of the report: sums over groups of photographs, protocol by protocol."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from training.evaluation.baselines import GAMMA, OTHER_BODIES

@@ -1,7 +1,5 @@
 """Figures of a group of photographs: means, intervals, comparisons, reliability; each a dict of name -> figure."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pictures that no camera took: screenshots with a small photograph in them, and flat drawings."""
 
-from __future__ import annotations
-
 import string
 from functools import cache
 
