@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CurveError
 from training.data.curves import read_dorf
 from training.data.dorf import main, parse_dorf

@@ -3,8 +3,6 @@ import json
 
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.manifest import (
     CRFNET2017_FILE,

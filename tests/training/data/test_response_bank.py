@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-
-scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extra")
+import scipy.io
 
 from crfnet_core.posterior import Family, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -35,7 +34,7 @@ def bodies(without):
 @pytest.fixture
 def data(tmp_path):
     (tmp_path / "dorf").mkdir()
-    scipy_io.savemat(tmp_path / "dorf/201_CRF_data.mat", {"B": UNIFORM ** DORF[:, None]})
+    scipy.io.savemat(tmp_path / "dorf/201_CRF_data.mat", {"B": UNIFORM ** DORF[:, None]})
     return tmp_path
 
 

@@ -2,9 +2,6 @@ from collections import Counter
 
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-pytest.importorskip("PIL", reason="training needs the train extra")
-
 from training.evaluation.plan import (
     CLEAN,
     CONDITIONS,

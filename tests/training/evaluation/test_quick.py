@@ -5,8 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from training.evaluation.__main__ import main, parsed

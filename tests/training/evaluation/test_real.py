@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extra")
+import scipy.io
 
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
@@ -87,7 +86,7 @@ def write_data(folder, root):
         ],
     )
     (folder / "dorf").mkdir()
-    scipy_io.savemat(folder / "dorf/201_CRF_data.mat", {"B": bundled_test_set().curves})
+    scipy.io.savemat(folder / "dorf/201_CRF_data.mat", {"B": bundled_test_set().curves})
     photo = "photos/plate.jpg"
     write_rows(
         folder / "real_bodies/cases.csv",

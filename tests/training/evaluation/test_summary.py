@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.response.metrics import peak_signal_to_noise
 from training.evaluation.report.cases import Cases, Resampling
 from training.evaluation.report.summary import (

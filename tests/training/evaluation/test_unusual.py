@@ -1,9 +1,5 @@
 from types import SimpleNamespace
 
-import pytest
-
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.table import Table
