@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -52,19 +52,12 @@ class Posterior(EqualByFields):
         if evidences:
             likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
             log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
-            ordinary = bank.ordinary
-            before = logarithms[ordinary]
-            # Among ordinary responses the evidence counts with the prior's exponent; their total probability stays.
-            after = before + prior.evidence * likelihoods[ordinary]
-            logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
-            # Unusual families gain on the average of ordinary responses, as far as lookalikes allow.
-            average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
-            gains = _bounded(log_odds - average, prior.lookalikes)
-            for family, gain in zip(UNUSUAL, gains, strict=True):
-                logarithms[bank.members(family)] += gain
-            unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
-            plain_likelihoods = independent * _plain_log_likelihoods(evidences)
-            plain += _plain_gains(plain, plain_likelihoods, average, prior.lookalikes)
+            before = logarithms[bank.ordinary]
+            average = _log_sum(before + likelihoods[bank.ordinary]) - _log_sum(before)
+            gains = dict(zip(UNUSUAL, _bounded(log_odds - average, prior.lookalikes), strict=True))
+            logarithms = _with_evidence(bank, logarithms, prior.evidence * likelihoods, gains)
+            unexplained += float(gains[Family.UNEXPLAINED])
+            plain += _plain_gains(plain, independent * _plain_log_likelihoods(evidences), average, prior.lookalikes)
         explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
@@ -147,6 +140,22 @@ class Posterior(EqualByFields):
         ends = [[np.interp(level, *knot) for knot in zip(cumulative, ordered, strict=True)] for level in levels]
         uniform = np.arange(SAMPLES)
         return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
+
+
+def _with_evidence(
+    bank: ResponseBank, logarithms: Float64Array, likelihoods: Float64Array, gains: Mapping[Family, float]
+) -> Float64Array:
+    """Return the log probabilities of responses, (N,), after evidence: its log likelihoods, (N,), and families' gains.
+
+    Among ordinary responses the likelihoods, which have the prior's exponent, move probability, whose total stays.
+    Unusual families gain on the average of ordinary responses.
+    """
+    moved = logarithms.copy()
+    before, after = logarithms[bank.ordinary], logarithms[bank.ordinary] + likelihoods[bank.ordinary]
+    moved[bank.ordinary] = after + _log_sum(before) - _log_sum(after)
+    for family, gain in gains.items():
+        moved[bank.members(family)] += gain
+    return moved
 
 
 def _weighed(

@@ -78,9 +78,8 @@ SHAPES: dict[str, tuple[int, ...]] = {
 
 _ENDS = dict(zip(SHAPES, accumulate(map(math.prod, SHAPES.values())), strict=True))
 
-#: Length of the vector, and the lengths of the first cues together: each may be what a network reads.
-LENGTHS = tuple(_ENDS[COUNTS_OF.get(cue.name, cue.name)] for cue in CUES)
-LENGTH = LENGTHS[-1]
+#: Length of the vector.
+LENGTH = sum(map(math.prod, SHAPES.values()))
 
 
 def window_statistics(window: Float32Array) -> Float32Array:

@@ -106,11 +106,11 @@ def draw_windows(scenes: TrainingScenes, count: int, *, seed: int, augment: bool
         torch.zeros(count, dtype=torch.int64, device=device),
         torch.zeros(count, device=device),
     )
-    pending = torch.arange(count, device=device)
+    pending, (low, high) = torch.arange(count, device=device), EXPOSURES
     for turn in range(TRIED * count):
         if turn % TRIED == 0:
             drawn.classes[pending] = _integers(len(scenes.curves), len(pending), generator)
-        drawn.exposures[pending] = _uniform(EXPOSURES, len(pending), generator)
+        drawn.exposures[pending] = low + (high - low) * torch.rand(len(pending), device=device, generator=generator)
         places = _places(scenes, len(pending), generator)
         parts = zip(pending.split(PART), places.split(PART), strict=True)
         covers = [_fill(drawn, scenes, *part, generator if augment else None) for part in parts]
@@ -168,9 +168,3 @@ def _crops(scenes: TrainingScenes, places: Tensor) -> Tensor:
 def _integers(end: int, count: int, generator: torch.Generator) -> Tensor:
     """Return random numbers from 0 to end - 1, int64 (count,)."""
     return torch.randint(end, (count,), device=generator.device, generator=generator)
-
-
-def _uniform(ends: tuple[float, float], count: int, generator: torch.Generator) -> Tensor:
-    """Return uniform numbers between two ends, float32 (count,)."""
-    low, high = ends
-    return low + (high - low) * torch.rand(count, device=generator.device, generator=generator)

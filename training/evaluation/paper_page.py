@@ -31,6 +31,7 @@ from training.evaluation.report import paper
 from training.evaluation.report.document import Report, read_report, value
 from training.evaluation.report.markdown import markdown_table
 from training.evaluation.test_sets import TestSet, dorf_test_set
+from training.synthesis.camera import EXPOSURE_FACTORS
 
 #: The text of the page around its tables and plots; the names in braces are filled in.
 TEMPLATE = Path(__file__).with_name("paper_page.md")
@@ -38,11 +39,7 @@ TEMPLATE = Path(__file__).with_name("paper_page.md")
 #: Head of a group of rows -> label of a row -> condition of the protocol `PAPER`.
 EXPERIMENTS: dict[str, dict[str, str]] = {
     "Table 2: exposure": {
-        "0.6": "exposure 0.6",
-        "0.8": "exposure 0.8",
-        "1.0": "clean",
-        "1.2": "exposure 1.2",
-        "1.4": "exposure 1.4",
+        f"{factor:.1f}": "clean" if factor == 1 else f"exposure {factor:g}" for factor in EXPOSURE_FACTORS
     },
     "Sec. 5.2: resolution": {f"{times}x": f"resolution {times}x" for times in (1, 2, 4)},
     "Sec. 5.3:": {"without color": "grayscale"},

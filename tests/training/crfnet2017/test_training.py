@@ -135,20 +135,8 @@ def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys
     monkeypatch.setattr(command, "training_digest", lambda data: "data")
     monkeypatch.setattr(command, "VALIDATION_WINDOWS", 2)
     monkeypatch.setattr(command, "RECIPES", {"default": {"regress": replace(REGRESSION.recipe, augmented=True)}})
-    options = [
-        "train",
-        "--data",
-        "data",
-        "--run",
-        str(tmp_path),
-        "--stage",
-        "regress",
-        "--device",
-        "cpu",
-        "--steps",
-        "1",
-    ]
-    monkeypatch.setattr("sys.argv", options)
+    options = ["train", "--data", "data", "--stage", "regress", "--device", "cpu", "--steps", "1", "--run"]
+    monkeypatch.setattr("sys.argv", [*options, str(tmp_path)])
     command.main()
     assert capsys.readouterr().out.startswith("step,train_loss,validation\n1,")
     assert load_network(tmp_path).network.head.out_features == 11

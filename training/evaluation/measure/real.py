@@ -112,13 +112,12 @@ def pooled_groups(photographs: Sequence[RealPhotograph]) -> list[list[RealPhotog
     bodies: dict[str, list[RealPhotograph]] = {}
     for photograph in photographs:
         bodies.setdefault(photograph.body_key, []).append(photograph)
-    return [_evenly(members) for members in bodies.values() if len(members) >= LEAST_POOLED]
-
-
-def _evenly(members: list[RealPhotograph]) -> list[RealPhotograph]:
-    """Return at most `MOST_POOLED` photographs, at even steps."""
-    steps = np.linspace(0, len(members) - 1, min(len(members), MOST_POOLED)).round().astype(int)
-    return [members[step] for step in steps]
+    groups = []
+    for members in bodies.values():
+        if len(members) >= LEAST_POOLED:
+            steps = np.linspace(0, len(members) - 1, min(len(members), MOST_POOLED)).round().astype(int)
+            groups.append([members[step] for step in steps])
+    return groups
 
 
 def _rows(
