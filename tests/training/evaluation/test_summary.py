@@ -4,14 +4,8 @@ import numpy as np
 import pytest
 
 from crfnet_core.response.metrics import peak_signal_to_noise
+from training.evaluation.report import summary
 from training.evaluation.report.cases import Cases, Resampling
-from training.evaluation.report.summary import (
-    difference_figures,
-    error_figures,
-    reliability_figures,
-    verdict_figures,
-    weight_figures,
-)
 
 
 @pytest.fixture
@@ -68,7 +62,7 @@ def test_every_body_counts_once():
 def test_figures_are_those_of_the_metrics(rng):
     model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
     parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))
-    figures = error_figures(parts, "model")
+    figures = summary.errors(parts, "model")
     assert figures["E_est mean"].value == pytest.approx(model.mean())
     assert figures["E_est median"].value == np.sort(model)[29]
     assert figures["E_est win rate"].value == pytest.approx((model < gamma).mean())
@@ -84,7 +78,7 @@ def test_paired_differences_see_what_intervals_hide(rng):
     model = rng.normal(0, 1, 6)[scenes] + rng.normal(0, 1, 10)[curves] + 5
     better = model - 0.1 + rng.normal(0, 0.01, 60)
     parts = cases(better=errors(better, model, model), model=errors(model, model, model))
-    weights, figures = parts.resampling, difference_figures(parts, "better", "model")
+    weights, figures = parts.resampling, summary.differences(parts, "better", "model")
     assert weights.mean(better).high > weights.mean(model).low
     assert figures["E_est difference"].value < 0
     assert not figures["E_est difference"].low <= 0 <= figures["E_est difference"].high
@@ -95,7 +89,7 @@ def test_paired_differences_see_what_intervals_hide(rng):
 def test_an_uncertainty_gains_what_it_foretells(rng, sign, least, most):
     model = rng.uniform(0, 3, 60)
     parts = cases(model={"E_est": model, "expected E_est": sign * model, "band coverage": np.full(60, 0.9)})
-    figures = reliability_figures(parts, "E_est", "model")
+    figures = summary.reliability(parts, "E_est", "model")
     assert figures["rank correlation"] == pytest.approx(sign)
     assert least - 1e-9 <= figures["gain"] <= most + 1e-9
     assert figures["band coverage"] == pytest.approx(0.9)
@@ -105,7 +99,7 @@ def test_answers_that_are_far_off_and_called_usable_are_counted():
     answers = [(3.5, 0.5, "usable"), (3.5, 0.1, "good"), (1.0, 0.5, "usable"), (1.0, 0.1, "usable")]
     answers.append((9.0, 0.9, "do not trust"))
     rows = [{"E_est": estimation, "shape": shape, "verdict": verdict} for estimation, shape, verdict in answers]
-    assert verdict_figures(Cases({"model": rows}), "model") == {
+    assert summary.verdicts(Cases({"model": rows}), "model") == {
         "accepted": 4,
         "refused": 1,
         "far off": 3,
@@ -115,6 +109,6 @@ def test_answers_that_are_far_off_and_called_usable_are_counted():
 def test_correlations_of_weights_are_over_bodies():
     bodies = [("a", 0.5, 0.6), ("a", 1.5, 1.4), ("b", 2.0, 3.0), ("c", 3.0, 5.0), ("d", 4.0, 7.0)]
     rows = [{"body key": body, "true weights": [true, 0, true], "weights": [w, 0, -w]} for body, true, w in bodies]
-    first, second, third = weight_figures(Cases({"model": rows}), "model").values()
+    first, second, third = summary.weight_correlations(Cases({"model": rows}), "model").values()
     assert (first.value, second.value, third.value) == pytest.approx((1, 0, -1), abs=1e-3)
-    assert weight_figures(Cases({"model": rows[:3]}), "model") == {}  # two bodies
+    assert summary.weight_correlations(Cases({"model": rows[:3]}), "model") == {}  # two bodies

@@ -6,20 +6,9 @@ from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.real import POOLED
 from training.evaluation.measure.simulated import PAPER
 from training.evaluation.plan import RESOLUTIONS
-from training.evaluation.report import paper
+from training.evaluation.report import paper, summary
 from training.evaluation.report.cases import Cases
 from training.evaluation.report.document import ReportRow
-from training.evaluation.report.summary import (
-    Figures,
-    change_figures,
-    difference_figures,
-    error_figures,
-    mean_figures,
-    partial_figures,
-    reliability_figures,
-    verdict_figures,
-    weight_figures,
-)
 
 #: Group of bodies, by how many photographs of each were estimated together -> the least number of photographs.
 POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
@@ -43,9 +32,9 @@ def stress_rows(conditions: dict[str, Cases]) -> Iterator[ReportRow]:
     for group, cases in conditions.items():
         base = conditions.get(RESOLUTIONS[0].name, cases) if group.startswith("resolution") else clean
         for name in cases.rows:
-            figures = error_figures(cases, name) | partial_figures(cases, name)
+            figures = summary.errors(cases, name) | summary.partial_errors(cases, name)
             if name in base.rows:
-                figures |= change_figures(cases, base, name)
+                figures |= summary.changes(cases, base, name)
             yield _row(PAPER, group, name, cases, figures)
         if group in paper.STRESS:
             error = paper.STRESS[group].estimation
@@ -60,7 +49,7 @@ def real_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[Repo
     for table, part in ((protocol, counted), (f"{protocol}, with caution", cases)):
         for row in _errors(table, "", part, list(part.rows), compared=[*ways, OTHER_BODIES]):
             way = row["estimator"]
-            yield row | (verdict_figures(part, way) | weight_figures(part, way) if way in ways else {})
+            yield row | (summary.verdicts(part, way) | summary.weight_correlations(part, way) if way in ways else {})
     for kind, index in counted.groups("kind").items():
         yield from _errors(f"{protocol} by kind", kind, counted.part(index), list(counted.rows))
     yield from reliability_rows(protocol, counted, ways)
@@ -73,7 +62,7 @@ def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[Repo
         part = counted.part(index)
         first, grade = part.first[0], "".join(sorted({row["grade"] for row in part.first}))
         for name in [*ways, GAMMA, OTHER_BODIES]:
-            figures = {"kind": first["kind"], "grade": grade} | mean_figures(part, name)
+            figures = {"kind": first["kind"], "grade": grade} | summary.means(part, name)
             yield _row(f"{protocol} by body", first["body"], name, part, figures)
 
 
@@ -91,7 +80,7 @@ def reliability_rows(protocol: str, cases: Cases, estimators: Sequence[str]) -> 
     """Yield how well the uncertainties of models foretell their errors (P5)."""
     for error in ("E_est", "shape"):
         for name in estimators:
-            yield _row(f"P5 {error}", protocol, name, cases, reliability_figures(cases, error, name))
+            yield _row(f"P5 {error}", protocol, name, cases, summary.reliability(cases, error, name))
 
 
 def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
@@ -100,7 +89,7 @@ def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
     for kind, index in groups.items():
         part = cases.part(index)
         for way in part.rows:
-            accepted = verdict_figures(part, way)["accepted"]
+            accepted = summary.verdicts(part, way)["accepted"]
             figures = {"accepted": accepted, "accepted fraction": accepted / len(part)}
             yield _row("P6 by kind" if kind else "P6", kind, way, part, figures)
 
@@ -116,12 +105,12 @@ def _errors(
     """Yield the errors of estimators, and of the first of `compared` less each other of them; and how many bodies."""
     bodies = {"bodies": len(cases.groups("body key"))} if cases.is_real else {}
     for name in estimators:
-        figures = error_figures(cases, name)
+        figures = summary.errors(cases, name)
         if name in compared[1:]:
-            figures |= difference_figures(cases, compared[0], name)
+            figures |= summary.differences(cases, compared[0], name)
         yield _row(table, group, name, cases, figures | bodies)
 
 
-def _row(table: str, group: str, estimator: str, cases: Cases, figures: Figures) -> ReportRow:
+def _row(table: str, group: str, estimator: str, cases: Cases, figures: summary.Figures) -> ReportRow:
     """Return a row of the report."""
     return {"table": table, "group": group, "estimator": estimator, "photographs": len(cases)} | figures

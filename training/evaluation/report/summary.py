@@ -29,7 +29,7 @@ LEAST_BODIES = 3
 LEAST_SPREAD = 1e-12
 
 
-def error_figures(cases: Cases, estimator: str) -> Figures:
+def errors(cases: Cases, estimator: str) -> Figures:
     """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR."""
     figures: Figures = {}
     resampling = cases.resampling
@@ -45,7 +45,7 @@ def error_figures(cases: Cases, estimator: str) -> Figures:
     return figures | {"PSNR of the mean": _psnr(figures["E_lin mean"])}
 
 
-def difference_figures(cases: Cases, first: str, second: str) -> Figures:
+def differences(cases: Cases, first: str, second: str) -> Figures:
     """Return the paired differences of the errors of two estimators."""
     return {
         f"{error} difference": cases.resampling.mean(cases.column(error, first) - cases.column(error, second))
@@ -53,7 +53,7 @@ def difference_figures(cases: Cases, first: str, second: str) -> Figures:
     }
 
 
-def change_figures(cases: Cases, clean: Cases, estimator: str) -> Figures:
+def changes(cases: Cases, clean: Cases, estimator: str) -> Figures:
     """Return the errors under a condition relative to the errors on the same photographs without it."""
     return {
         f"{error} x clean": cases.resampling.ratio(cases.column(error, estimator), clean.column(error, estimator))
@@ -61,25 +61,25 @@ def change_figures(cases: Cases, clean: Cases, estimator: str) -> Figures:
     }
 
 
-def partial_figures(cases: Cases, estimator: str) -> Figures:
+def partial_errors(cases: Cases, estimator: str) -> Figures:
     """Return E_est over the lower part of the brightness, and the same of scaled estimates (CRF-net paper, Fig. 9)."""
     return {f"{name} mean": cases.resampling.mean(cases.column(name, estimator)) for name in ("lower", "partial")}
 
 
-def verdict_figures(cases: Cases, estimator: str) -> Figures:
+def verdicts(cases: Cases, estimator: str) -> Figures:
     """Return how many answers of a model are accepted ("good" or "usable"), and how many of these are far off."""
     accepted = [row for row in cases.rows[estimator] if row["verdict"] != Verdict.DO_NOT_TRUST]
     far_off = [row for row in accepted if any(row.get(error, 0) > limit for error, limit in FAR_OFF.items())]
     return {"accepted": len(accepted), "refused": len(cases) - len(accepted), "far off": len(far_off)}
 
 
-def mean_figures(cases: Cases, estimator: str) -> Figures:
+def means(cases: Cases, estimator: str) -> Figures:
     """Return the plain means of the errors, and of what a model expected."""
     names = [name for name in (*ERRORS, "expected E_est", "expected shape") if name in cases.rows[estimator][0]]
     return {f"{name} mean": float(cases.column(name, estimator).mean()) for name in names}
 
 
-def reliability_figures(cases: Cases, error: str, estimator: str) -> Figures:
+def reliability(cases: Cases, error: str, estimator: str) -> Figures:
     """Return how well a model's expected E_est or shape error foretells the error (P5).
 
     "gain" is the part, at most 1, of the way from rejecting at random to rejecting the largest errors first that is
@@ -108,7 +108,7 @@ def rejection_curve(errors: Float64Array, uncertainties: Float64Array) -> Float6
     return (np.cumsum(ordered) / np.arange(1, len(errors) + 1))[::-1]
 
 
-def weight_figures(cases: Cases, estimator: str) -> Figures:
+def weight_correlations(cases: Cases, estimator: str) -> Figures:
     """Return the correlation over bodies of each of the first EMoR weights, true against estimated.
 
     The weights of a body are the means over its photographs; bodies are resampled. With fewer than `LEAST_BODIES`
