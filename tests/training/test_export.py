@@ -10,8 +10,7 @@ onnx = pytest.importorskip("onnx", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ModelConfig, ResponseNetwork
-from training.export.golden import PARITY, assert_parity, write_golden
-from training.export.model_folder import load_network, write_config
+from training.export.model_folder import PARITY, assert_parity, load_network, write_config, write_golden
 from training.export.onnx_graph import POOLING, export_onnx
 from training.network.average import average
 from training.network.model import NetworkConfig, PhotographNet

@@ -15,8 +15,7 @@ from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_opt
 from training.crfnet2017.stages import StageTask
 from training.crfnet2017.train import RunConfig, Trainer, TrainingState, start_from, train
 from training.crfnet2017.windows import draw_windows
-from training.export.golden import PARITY, assert_parity, write_golden
-from training.export.model_folder import write_config
+from training.export.model_folder import PARITY, assert_parity, write_config, write_golden
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded
 from training.network.moving_average import moving_average
 from training.provenance import read_run
