@@ -1,7 +1,7 @@
 """Turn a run into a model folder: ``python -m training.export.model_folder --run DIR --out DIR ...``.
 
-The steps: the graph (`onnx_graph`); golden predictions, the answers of PyTorch for windows of the bundled plate, and the
-parity of onnxruntime with them; model.json, and the record of the run beside it.
+The steps: the graph (`onnx_graph`); golden predictions, the answers of PyTorch for windows of the bundled plate, and
+the parity of onnxruntime with them; model.json, and the record of the run beside it.
 """
 
 import argparse
