@@ -5,11 +5,10 @@ takes ten windows of each of five exposures of each of its 595 photographs under
 every window has a photograph of its own. `render` applies the response and rounds to 8 bits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import torch
@@ -53,7 +52,7 @@ class TrainingScenes:
     curves: Tensor
     exposures: Tensor
 
-    def to(self, device: torch.device) -> TrainingScenes:
+    def to(self, device: torch.device) -> Self:
         """Return the scenes on a device."""
         pixels = tuple(scene.to(device) for scene in self.pixels)
         return replace(self, pixels=pixels, curves=self.curves.to(device), exposures=self.exposures.to(device))

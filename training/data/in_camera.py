@@ -1,9 +1,8 @@
 """In-camera responses: what measured bodies have in common, and how they differ, in the logarithm of irradiance."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -55,7 +54,7 @@ class InCameraResponses:
     spreads: dict[str, float]
 
     @classmethod
-    def from_bodies(cls, bodies: Sequence[Body]) -> InCameraResponses:
+    def from_bodies(cls, bodies: Sequence[Body]) -> Self:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}

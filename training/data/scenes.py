@@ -1,11 +1,9 @@
 """Scene-linear photographs to train and measure on, split by scene."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import OpenImageIO as oiio
@@ -44,7 +42,7 @@ class Scene:
     is_panorama: bool
 
     @classmethod
-    def scaled(cls, name: str, pixels: Float32Array, is_panorama: bool) -> Scene:
+    def scaled(cls, name: str, pixels: Float32Array, is_panorama: bool) -> Self:
         """Return the scene of linear pixels (H, W, 3) of any scale."""
         luminance = pixels @ LUMINANCE
         return cls(name, pixels / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama)

@@ -1,11 +1,10 @@
 """The models that an evaluation measures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder, packaged_models
@@ -25,7 +24,7 @@ class Model:
     held_out_curves: tuple[int, ...] = ()
 
     @classmethod
-    def find(cls, wanted: str) -> Model:
+    def find(cls, wanted: str) -> Self:
         """Return the model of this name in crfnet_core/models, or in the folder of this path.
 
         Raise CRFNetError if there is neither.

@@ -1,10 +1,9 @@
 """The simulated photographs: scene, response, exposure and condition of each, balanced and seeded."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -47,7 +46,7 @@ class Condition:
     jpeg_quality: int | None = None
 
     @property
-    def light(self) -> Condition:
+    def light(self) -> Self:
         """The part of the condition that comes before exposure: photographs that share it share the light."""
         return replace(self, name="", factor=1.0, noise=0.0, jpeg_quality=None)
 

@@ -5,12 +5,10 @@ response, sharpening and grain, 8-bit rounding, JPEG (`simulate_capture`). `rend
 estimator reads it.
 """
 
-from __future__ import annotations
-
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from PIL import Image
@@ -48,7 +46,7 @@ class Capture:
     subsampled: bool = True
 
     @classmethod
-    def draw(cls, rng: np.random.Generator) -> Capture:
+    def draw(cls, rng: np.random.Generator) -> Self:
         """Return the capture of a random camera; most have some noise and compress."""
         return cls(
             shot_noise=10 ** rng.uniform(-5, -3) if rng.random() < 0.7 else 0.0,
