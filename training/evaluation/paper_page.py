@@ -9,7 +9,7 @@ the page. The first model is the default, the second the paper's network.
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -29,7 +29,7 @@ from training.evaluation.models import Model, load_network
 from training.evaluation.plan import SEED, TestPhotograph, clean_photographs
 from training.evaluation.report import paper
 from training.evaluation.report.document import Report, read_report, value
-from training.evaluation.report.markdown import markdown_table
+from training.evaluation.report.markdown import markdown_rows
 from training.evaluation.test_sets import TestSet, dorf_test_set
 from training.synthesis.camera import EXPOSURE_FACTORS
 
@@ -74,10 +74,10 @@ def page_text(report: Report) -> str:
         photographs=overall["photographs"],
         stressed=report.row(PAPER, GAMMA, "clean")["photographs"],
         bodies=report.row("P4 both", GAMMA)["bodies"],
-        experiments=_experiments(report),
-        wins=_wins(report),
-        windows=_windows(report),
-        real=_real(report),
+        experiments=markdown_rows(_experiments(report)),
+        wins=markdown_rows(_wins(report)),
+        windows=markdown_rows(_windows(report)),
+        real=markdown_rows(_real(report)),
     )
 
 
@@ -87,54 +87,37 @@ def _models(report: Report) -> tuple[str, str]:
     return network, default
 
 
-def _estimators(report: Report) -> tuple[str, ...]:
-    """Return the estimators of the page, in their order."""
-    return (paper.PAPER, *_models(report), GAMMA)
-
-
-def _experiments(report: Report) -> str:
-    """Return the table of all conditions."""
+def _experiments(report: Report) -> Iterator[list[str]]:
+    """Yield the rows of all conditions."""
     gamma = f"{_errors(report, 'P0', GAMMA)}; the paper {_stated(paper.GAMMA)}"
-    overall = [_stated(paper.OVERALL), *(_errors(report, "P0", name) for name in _models(report)), gamma]
-    rows = [["Sec. 4: all photographs", *overall]]
+    overall = (_errors(report, "P0", name) for name in _models(report))
+    yield ["Sec. 4: all photographs", _stated(paper.OVERALL), *overall, gamma]
     for head, conditions in EXPERIMENTS.items():
         for label, condition in conditions.items():
-            cells = [_errors(report, PAPER, name, condition) for name in _estimators(report)]
-            rows.append([f"{head} {label}", *cells])
-    return markdown_table(["E_est [95 %] (E_lin)", *_estimators(report)], rows)
+            estimators = (paper.PAPER, *_models(report), GAMMA)
+            yield [f"{head} {label}", *(_errors(report, PAPER, name, condition) for name in estimators)]
 
 
-def _wins(report: Report) -> str:
-    """Return the table of Sec. 5.6."""
-    rows = [
-        ["the paper", *(f"{100 * rate:.0f} %" for rate in (paper.WIN_RATE.estimation, paper.WIN_RATE.linearization))]
-    ]
+def _wins(report: Report) -> Iterator[list[str]]:
+    """Yield the rows of Sec. 5.6."""
     for name in _models(report):
-        rates = [report.row("P0", name)[f"{error} win rate"] for error in ("E_est", "E_lin")]
-        rows.append([name, *("{:.0f} % [{:.0f}, {:.0f}]".format(*(100 * part for part in rate)) for rate in rates)])
-    return markdown_table(["Sec. 5.6: better than gamma 2.2 on", "by E_est", "by E_lin"], rows)
+        rates = (report.row("P0", name)[f"{error} win rate"] for error in ("E_est", "E_lin"))
+        yield [name, *("{:.0f} % [{:.0f}, {:.0f}]".format(*(100 * part for part in rate)) for rate in rates)]
 
 
-def _windows(report: Report) -> str:
-    """Return the table of Fig. 3 and Fig. 9."""
-    heads = [f"Fig. 3: {way.removeprefix(', one ')}" for way in WAYS]
-    heads = [*heads, "ten windows", "Fig. 9: below 80 % brightness", "the same, scaled"]
-    rows = []
+def _windows(report: Report) -> Iterator[list[str]]:
+    """Yield the rows of Fig. 3 and Fig. 9."""
     for name in _models(report):
-        ways = [_errors(report, PAPER, name + way, "clean") for way in (*WAYS, "")]
+        ways = (_errors(report, PAPER, name + way, "clean") for way in (*WAYS, ""))
         clean = report.row(PAPER, name, "clean")
-        rows.append([name, *ways, *(_interval(clean[f"{part} mean"]) for part in ("lower", "partial"))])
-    return markdown_table(["clean photographs", *heads], rows)
+        yield [name, *ways, *(_interval(clean[f"{part} mean"]) for part in ("lower", "partial"))]
 
 
-def _real(report: Report) -> str:
-    """Return the table of Fig. 6."""
-    rows = [["the paper, 8 photographs", "1.06 (0.42 to 2.18)", "", "2.82"]]
+def _real(report: Report) -> Iterator[list[str]]:
+    """Yield the rows of Fig. 6."""
     for name in (*_models(report), OTHER_BODIES, GAMMA):
         row = report.row("P4 both", name)
-        figures = (_interval(row["E_est mean"]), _interval(row["shape mean"], 3), f"{value(row['E_lin mean']):.2f}")
-        rows.append([name, *figures])
-    return markdown_table(["Fig. 6: real photographs", "E_est", "shape error in stops", "E_lin"], rows)
+        yield [name, _interval(row["E_est mean"]), _interval(row["shape mean"], 3), f"{value(row['E_lin mean']):.2f}"]
 
 
 def _errors(report: Report, table: str, estimator: str, group: str = "") -> str:
@@ -160,7 +143,7 @@ def draw_stress(path: Path, report: Report) -> None:
     """Draw E_est against exposure, noise and blur."""
     figure = _figure()
     for axes, (word, conditions) in zip(figure.subplots(1, 3, sharey=True), PLOTTED.items(), strict=True):
-        for name, color in zip(_estimators(report), COLORS, strict=True):
+        for name, color in zip((paper.PAPER, *_models(report), GAMMA), COLORS, strict=True):
             errors = [value(report.row(PAPER, name, each).get("E_est mean", np.nan)) for each in conditions.values()]
             axes.plot([float(place) for place in conditions], errors, "o-", color=color, label=name)
         axes.set_xlabel(word)

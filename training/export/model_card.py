@@ -19,7 +19,7 @@ from training.evaluation.report import paper
 from training.evaluation.report.document import Report, read_report, value
 from training.evaluation.report.markdown import markdown_table
 
-#: The introductions of the cards, one for each input of networks; the names in braces are filled in.
+#: The introductions of the cards, one for each input of networks, and the figures; names in braces are filled in.
 TEMPLATES = Path(__file__).with_name("model_card_templates")
 
 ALL_CURVES = (
@@ -55,20 +55,17 @@ def introduction(folder: Path, config: ModelConfig) -> str:
 
 def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
     """Return the text of the model card."""
-    on_p2 = " P2: the same of responses held out of training." if report.table("P2") else ""
-    parts = [
-        introduction(folder, config),
-        "## Accuracy\n",
-        "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
-        f"{on_p2} P4: real photographs with measured responses, means over bodies, with a"
-        " prior that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were"
-        " chosen on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an"
-        f" E_est of {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
-        accuracy_table(config.accuracy),
-        bodies_table(report, config.name),
-        "How it is made and measured: `training/README.md`.",
-    ]
-    return "\n".join(parts) + "\n"
+    figures = (
+        (TEMPLATES / "accuracy.md")
+        .read_text()
+        .format(
+            on_p2=" P2: the same of responses held out of training." if report.table("P2") else "",
+            paper=paper,
+            accuracy=accuracy_table(config.accuracy),
+            bodies=bodies_table(report, config.name),
+        )
+    )
+    return f"{introduction(folder, config)}\n{figures}"
 
 
 def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:

@@ -36,7 +36,7 @@ PARITY = 1e-3
 def load_network(run: Path) -> ShippedNetwork:
     """Return the network of a run, ready to infer, with the half-precision matrices that it ships with."""
     net = PhotographNet(NetworkConfig(**read_run(run)["recipe"]["network"]))
-    net.load_state_dict(torch.load(run / CHECKPOINT, weights_only=True)["net"])
+    net.load_state_dict(torch.load(run / CHECKPOINT, weights_only=True)["network"])
     return rounded(ShippedNetwork(net).eval())
 
 

@@ -41,7 +41,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     parts = [share / sum(shares) for share in shares]
     out.mkdir(parents=True, exist_ok=True)
     with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
-        torch.save({"net": weighted_mean(networks, parts)}, temporary)
+        torch.save({"network": weighted_mean(networks, parts)}, temporary)
     largest = records[parts.index(max(parts))]
     averaged = [_part(*one) for one in zip(sources, records, parts, strict=True)]
     write_json(out / RUN_FILE, largest | {"average": averaged})

@@ -94,7 +94,12 @@ def filled(template: Path, tables: Mapping[str, str], **facts: Any) -> str:
 
 def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a Markdown table."""
-    return "\n".join(f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)) + "\n"
+    return markdown_rows((header, ["---"] * len(header), *rows)) + "\n"
+
+
+def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
+    """Return rows of a Markdown table."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
 def estimator_tables(report: Report, table: str, figures: Mapping[str, str], groups: Sequence[str] = ()) -> str:
