@@ -111,13 +111,7 @@ class Trainer:
 
 
 def train(
-    scenes: TrainingScenes,
-    validation: Windows,
-    run: Path,
-    config: RunConfig,
-    *,
-    digest: str,
-    stop: int | None = None,
+    scenes: TrainingScenes, validation: Windows, run: Path, config: RunConfig, *, digest: str, stop: int | None = None
 ) -> TrainingState:
     """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
 

@@ -4,17 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from .parts import (
-    Commands,
-    Parser,
-    add_action,
-    add_command,
-    add_frames,
-    add_json,
-    add_network,
-    add_plate,
-    written_path,
-)
+from .parts import Commands, Parser, add_action, add_command, add_frames, add_json, add_network, add_plate, written_path
 
 ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
