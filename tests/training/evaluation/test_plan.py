@@ -2,14 +2,7 @@ from collections import Counter
 
 import pytest
 
-from training.evaluation.plan import (
-    CLEAN,
-    CONDITIONS,
-    Condition,
-    balanced,
-    clean_photographs,
-    stress_photographs,
-)
+from training.evaluation.plan import CLEAN, CONDITIONS, Condition, balanced, clean_photographs, stress_photographs
 from training.synthesis.camera import Capture
 
 

@@ -16,12 +16,7 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
-from training.evaluation.measure.real import (
-    bank_without,
-    mean_of_other_bodies,
-    ways_of,
-    without_exif,
-)
+from training.evaluation.measure.real import bank_without, mean_of_other_bodies, ways_of, without_exif
 from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set

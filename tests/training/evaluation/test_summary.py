@@ -99,11 +99,7 @@ def test_answers_that_are_far_off_and_called_usable_are_counted():
     answers = [(3.5, 0.5, "usable"), (3.5, 0.1, "good"), (1.0, 0.5, "usable"), (1.0, 0.1, "usable")]
     answers.append((9.0, 0.9, "do not trust"))
     rows = [{"E_est": estimation, "shape": shape, "verdict": verdict} for estimation, shape, verdict in answers]
-    assert summary.verdicts(Cases({"model": rows}), "model") == {
-        "accepted": 4,
-        "refused": 1,
-        "far off": 3,
-    }
+    assert summary.verdicts(Cases({"model": rows}), "model") == {"accepted": 4, "refused": 1, "far off": 3}
 
 
 def test_correlations_of_weights_are_over_bodies():
