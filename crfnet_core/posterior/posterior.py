@@ -57,7 +57,9 @@ class Posterior(EqualByFields):
             gains = dict(zip(UNUSUAL, _bounded(log_odds - average, prior.lookalikes), strict=True))
             logarithms = _with_evidence(bank, logarithms, prior.evidence * likelihoods, gains)
             unexplained += float(gains[Family.UNEXPLAINED])
-            plain += _plain_gains(plain, independent * _plain_log_likelihoods(evidences), average, prior.lookalikes)
+            emor = ResponseBank.plain().weights
+            stated = np.sum([evidence.ordinary_log_likelihoods(emor) for evidence in evidences], axis=0)
+            plain += _plain_gains(plain, independent * stated, average, prior.lookalikes)
         explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
@@ -179,12 +181,6 @@ def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
     Such photographs add to the likelihood of ordinary responses: the odds x become x / (1 - lookalikes + lookalikes x).
     """
     return log_odds - np.logaddexp(np.log1p(-lookalikes), _log(lookalikes) + log_odds)
-
-
-def _plain_log_likelihoods(evidences: Sequence[Evidence]) -> Float64Array:
-    """Return the logarithms of the likelihoods of plain responses, shape (6,), by the evidence of all photographs."""
-    weights = ResponseBank.plain().weights
-    return np.asarray(np.sum([evidence.ordinary_log_likelihoods(weights) for evidence in evidences], axis=0))
 
 
 def _plain_gains(plain: Float64Array, likelihoods: Float64Array, average: float, lookalikes: float) -> Float64Array:
