@@ -1,10 +1,9 @@
 """The posterior: prior times evidence over the bank; its answer, errors and band."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -40,7 +39,7 @@ class Posterior(EqualByFields):
     @classmethod
     def from_evidences(
         cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
-    ) -> Posterior:
+    ) -> Self:
         """Return prior times evidence, one of each photograph, without which it is the prior: Eq. 24 of docs/METHOD.md.
 
         `independent` is the fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.

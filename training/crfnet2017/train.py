@@ -49,13 +49,15 @@ class RunConfig:
     init: str = "none"
 
 
+@dataclass
 class Trainer:
     """One stage of the training, from where `state` stands."""
 
-    def __init__(
-        self, config: RunConfig, task: StageTask, state: TrainingState, scenes: TrainingScenes, validation: Windows
-    ) -> None:
-        self.config, self.task, self.state, self.scenes, self.validation = config, task, state, scenes, validation
+    config: RunConfig
+    task: StageTask
+    state: TrainingState
+    scenes: TrainingScenes
+    validation: Windows
 
     def run(self, folder: Path, steps: range) -> None:
         """Do the steps; validate, log and save. The windows of a step depend on the seed and the step only."""

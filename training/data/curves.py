@@ -88,15 +88,12 @@ class CurveSource:
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""
         if rng.random() < self.camera_fraction:
-            return self._warped(self._mixed(self._camera_curves(rng), rng), rng, self.warp / 2)
+            chosen = rng.integers(len(self.bases), size=2)
+            curves = np.stack([camera_response(self.bases[i], rng.uniform(*HEADROOM)) for i in chosen])
+            return self._warped(self._mixed(curves, rng), rng, self.warp / 2)
         if rng.random() < self.plain_fraction:
             return self.dorf[rng.integers(len(self.dorf))]
         return self._warped(self._mixed(self.dorf[rng.integers(len(self.dorf), size=3)], rng), rng, self.warp)
-
-    def _camera_curves(self, rng: np.random.Generator) -> Float64Array:
-        """Return two camera responses, each with its own headroom."""
-        chosen = rng.integers(len(self.bases), size=2)
-        return np.stack([camera_response(self.bases[i], rng.uniform(*HEADROOM)) for i in chosen])
 
     def _mixed(self, curves: Float64Array, rng: np.random.Generator) -> Float64Array:
         """Return a random convex mixture, most often near one of the curves."""

@@ -3,7 +3,6 @@
 No model is trained on the pixels. A prior may be made from the responses, out of fold wherever it is measured.
 """
 
-import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from crfnet_core.response.curve import ResponseCurve
+from training.data.scenes import table_rows
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -83,10 +83,10 @@ def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
 
     DATA/real_bodies may be absent; its list says which bodies share a fold. In DATA/real each body is its own fold.
     """
-    sets = {REAL: [_of_real(data / REAL, row) for row in case_rows(data / REAL)]}
+    sets = {REAL: [_of_real(data / REAL, row) for row in table_rows(data / REAL / "cases.csv")]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in table_rows(folder / "cases.csv")]
     return sets
 
 
@@ -122,12 +122,6 @@ def model_key(photograph: RealPhotograph) -> str:
 def read_measured(path: Path) -> ResponseCurve:
     """Return a measured response: a file of irradiance and response."""
     return ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1])
-
-
-def case_rows(folder: Path) -> list[dict[str, str]]:
-    """Return the rows of a folder's cases.csv."""
-    with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:

@@ -55,8 +55,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
     only, so that they move no other.
     """
-    with (folder / "manifest.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = table_rows(folder / "manifest.csv")
     is_imported = [row.get("source", "").startswith(IMPORTED) for row in rows]
     listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
     scenes = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if not imported)
@@ -72,6 +71,12 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
         "validation": panoramas[first:second],
         "train": photographs[held_out:] + panoramas[second:] + more,
     }
+
+
+def table_rows(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a table that comes with the data."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:

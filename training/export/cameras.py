@@ -7,12 +7,11 @@ taken for one setting of it unless their responses differ by more than `SAME_SET
 entry for each setting, by the most certain stack.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -25,11 +24,11 @@ from training.data.in_camera import log_irradiance, response_of
 from training.data.real_photographs import (
     REAL_BODIES,
     TRUSTED_GRADES,
-    case_rows,
     caution,
     metadata_of_case,
     read_measured,
 )
+from training.data.scenes import table_rows
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
 SAME_SETTING = 2.0
@@ -64,7 +63,7 @@ class Stack:
     grade: str
     caution: str
 
-    def is_like(self, other: Stack) -> bool:
+    def is_like(self, other: Self) -> bool:
         """Return whether two stacks may be of one setting."""
         expected = float(np.hypot(self.error, other.error))
         return estimation_error(self.curve, other.curve) <= SAME_SETTING * expected
@@ -73,7 +72,7 @@ class Stack:
 def measured_cameras(data: Path) -> list[Camera]:
     """Return the cameras of DATA/real_bodies, sorted by name."""
     folder = data / REAL_BODIES
-    stacks = {row["stack"]: _stack(folder, row) for row in case_rows(folder) if _is_taken(row)}
+    stacks = {row["stack"]: _stack(folder, row) for row in table_rows(folder / "cases.csv") if _is_taken(row)}
     bodies: dict[str, list[list[Stack]]] = {}
     for stack in sorted(stacks.values(), key=lambda stack: (stack.settings.camera, stack.error)):
         settings = bodies.setdefault(stack.settings.camera, [])

@@ -73,7 +73,10 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
         state.resume(run / CHECKPOINT)
     elif init is not None:
         start_from(state.network, init)
-    loss = _loss(photographs, config)
+    # The truth competes with responses of training photographs, drawn by the seed.
+    chosen = torch.randperm(len(photographs.weights), generator=torch.Generator().manual_seed(config.seed))
+    competitors = photographs.only(chosen[:COMPETITORS])
+    loss = EvidenceLoss(competitors.weights, competitors.families)
     while state.done < config.epochs:
         train_loss = _train_epoch(state, loss, photographs, config)
         window_error, error = validation_errors(state.averaged.module, loss, held_out)
@@ -95,12 +98,6 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             losses.append(loss.of_each(evidence, weights, families))
             errors.append(loss.errors(evidence, weights)[families == 0])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
-
-
-def _loss(shards: Shards, config: TrainingConfig) -> EvidenceLoss:
-    """Return the loss in which the truth competes with responses of training photographs, drawn by the seed."""
-    chosen = torch.randperm(len(shards.weights), generator=torch.Generator().manual_seed(config.seed))[:COMPETITORS]
-    return EvidenceLoss(shards.weights[chosen], shards.families[chosen])
 
 
 def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
