@@ -11,7 +11,8 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.analysis import cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import Predictions, ResponseNetwork
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.network.inference import Predictions
 from crfnet_core.network.pooling import inliers, robust_mean
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin

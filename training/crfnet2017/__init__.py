@@ -3,8 +3,7 @@
 windows  draws windows of linear scenes, changes their light and renders them
 network  the network of Table 1
 recipes  optimizers, learning rates and lengths of both stages
-stages   loss and validation figure of both stages
-train    the command that trains
+train    loss and validation figure of both stages, and the command that trains
 export   the command that writes the model folder
 
 Source: Li & Peers, "CRF-net: Single Image Radiometric Calibration using CNNs", CVMP 2017: Table 1, Sec. 3.2 (network,

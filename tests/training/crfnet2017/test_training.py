@@ -12,8 +12,7 @@ from training.crfnet2017 import train as command
 from training.crfnet2017.export import fit_worth, fold_normalization, load_network
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
-from training.crfnet2017.stages import StageTask
-from training.crfnet2017.train import RunConfig, Trainer, start_from, train
+from training.crfnet2017.train import RunConfig, StageTask, Trainer, start_from, train
 from training.crfnet2017.windows import draw_windows
 from training.export.model_folder import PARITY, assert_parity, write_config, write_golden
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded

@@ -16,7 +16,7 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
-from training.evaluation.measure.real import bank_without, mean_of_other_bodies, ways_of, without_exif
+from training.evaluation.measure.real import cached_bank, mean_of_other_bodies, ways_of, without_exif
 from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set
@@ -153,7 +153,7 @@ def test_p4_answers_by_the_evidence_of_the_model_and_the_bank_of_the_other_bodie
     out, data = measured_once[0], measured_once[0] / "data"
     nearer = []
     for case in real_photographs(data)["real"][:2]:
-        bank = bank_without(data, case.fold)
+        bank = cached_bank(data, without=case.fold)
         prior_alone = Posterior.from_evidences(bank, Prior.load()).curve
         (row,) = photographs(out, photograph=case.name, estimator="fixed_model, metadata ignored")
         nearer.append(estimation_error(case.truth(), prior_alone) - row["E_est"])
@@ -232,7 +232,7 @@ def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):
     one, two, _ = real_photographs(data)["real"]
     brightest = [
         max(bank.brightness[bank.members(family), 10].max() for family in IN_CAMERA)
-        for bank in (bank_without(data, case.fold) for case in (one, two))
+        for bank in (cached_bank(data, without=case.fold) for case in (one, two))
     ]
     assert brightest[0] > brightest[1] + 0.1
 

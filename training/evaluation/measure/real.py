@@ -39,6 +39,9 @@ from training.synthesis.camera import code_counts
 #: The most photographs of a body that are estimated together, and the fewest.
 MOST_POOLED, LEAST_POOLED = 4, 2
 
+#: The bank without the bodies of a fold, made once for each.
+cached_bank = cache(make_bank)
+
 #: What follows the name of a protocol whose photographs are estimated together.
 POOLED = ", pooled"
 
@@ -94,7 +97,7 @@ def _measure_models(
     for group in tqdm(groups, desc=protocol, unit="group"):
         if not (lacking := [model for model in models if lacks(model, group)]):
             continue
-        photos, bank = [read_real_photo(photograph) for photograph in group], bank_without(data, group[0].fold)
+        photos, bank = [read_real_photo(photograph) for photograph in group], cached_bank(data, without=group[0].fold)
         for model in lacking:
             answers = estimates(photos, group[0].kind, load_network(model), bank)
             for photograph, photo in zip(group, photos, strict=True):
@@ -161,12 +164,6 @@ def without_exif(photo: Photo) -> Photo:
     """Return the photograph as a web site sends it: its file states only the size of the picture."""
     height, width = photo.pixels.shape[:2]
     return photo.with_metadata(FileMetadata(width=width, height=height, file_format="WebP"))
-
-
-@cache
-def bank_without(data: Path, fold: str) -> ResponseBank:
-    """Return the bank without the bodies of a fold, made once for each fold."""
-    return make_bank(data, without=fold)
 
 
 def mean_of_other_bodies(

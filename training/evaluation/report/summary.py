@@ -31,8 +31,7 @@ LEAST_SPREAD = 1e-12
 
 def errors(cases: Cases, estimator: str) -> Figures:
     """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR."""
-    figures: Figures = {}
-    resampling = cases.resampling
+    figures, resampling = dict[str, Any](), cases.resampling
     for error in ERRORS:
         values, gamma = cases.column(error, estimator), cases.column(error, GAMMA)
         figures |= {

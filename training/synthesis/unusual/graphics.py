@@ -27,6 +27,9 @@ DRAWN_SIZE = 2 * WINDOW_SIZE
 
 Color = tuple[int, int, int]
 
+#: Pillow's own font of a size, loaded once.
+_font = cache(ImageFont.load_default)
+
 
 def screenshot(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return screenshots: flat panels, gradients, lines of text, and a scaled photograph pasted in."""
@@ -82,12 +85,6 @@ def _line(width: int, size: int, rng: np.random.Generator) -> str:
     wanted = max(1, int(width / (size * 3.5) * rng.uniform(0.2, 1)))
     words = ("".join(rng.choice(letters, rng.integers(*WORD))) for _ in range(min(wanted, WORDS)))
     return " ".join(words)
-
-
-@cache
-def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Return Pillow's own font."""
-    return ImageFont.load_default(size)
 
 
 def line_art(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
