@@ -65,7 +65,7 @@ SIZE, DPI, COLORS = (9.0, 2.9), 80, ("#7b3294", "#1b9e3c", "#d95f02", "#808080")
 
 def page_text(report: Report) -> str:
     """Return the page."""
-    default, network = report.models
+    network, default = _models(report)
     overall = report.row("P0", network)
     return TEMPLATE.read_text(encoding="utf-8").format(
         network=network,

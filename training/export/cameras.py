@@ -113,8 +113,7 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
 def _is_taken(row: Mapping[str, str]) -> bool:
     """Return whether the stack of a row is one of the library: see the head of the module."""
     is_edited = DEVELOPED in row["use"] or is_editor(row["exif_software"])
-    is_known = not row["body"].startswith(UNKNOWN_BODY)
-    return is_known and row["grade"] in TRUSTED_GRADES and not is_edited
+    return row["grade"] in TRUSTED_GRADES and not is_edited and not row["body"].startswith(UNKNOWN_BODY)
 
 
 def _stack(folder: Path, row: Mapping[str, str]) -> Stack:

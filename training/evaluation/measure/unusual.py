@@ -78,10 +78,9 @@ def _lacks(table: Table, scene: SceneFile, kind: UnusualKind, model: Model) -> b
 
 def _rows(photo: Photo, scene: SceneFile, kind: UnusualKind, model: Model) -> Iterator[Row]:
     """Yield the rows of a picture: the verdicts of a model, asked in all `ways_of`."""
-    common = {"protocol": PROTOCOL, "photograph": label(scene, kind), "model": model.key}
-    columns = {"scene": scene.name, "kind": kind.value}
+    columns = {"photograph": label(scene, kind), "model": model.key, "scene": scene.name, "kind": kind.value}
     for way, verdict in zip(ways_of(model.name), _verdicts(photo, kind, load_network(model)), strict=True):
-        yield common | {"estimator": way, "verdict": verdict} | columns
+        yield {"protocol": PROTOCOL, "estimator": way, "verdict": verdict} | columns
 
 
 def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list[str]:
