@@ -3,8 +3,6 @@
 `estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -92,15 +90,16 @@ def estimate_from_evidence(
     photographs = [one.photograph for one in analyzed]
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
-    prior = (prior or Prior.load()).reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
-    if any(origin.names_device for origin in origins):
-        prior = replace(prior, plain=0.0)
+    prior = _informed(prior or Prior.load(), origins, levels)
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     posterior = Posterior.from_evidences(bank, prior, [one.evidence for one in analyzed], independent=independent)
-    makes = tuple(photograph.make for photograph in photographs)
-    is_noise = all(photograph.is_noise for photograph in photographs)
-    log_probability = posterior.families[Family.LOG]
-    recognition = recognize(levels, log_probability=log_probability, is_noise=is_noise, makes=makes, origins=origins)
+    recognition = recognize(
+        levels,
+        log_probability=posterior.families[Family.LOG],
+        is_noise=all(photograph.is_noise for photograph in photographs),
+        makes=tuple(photograph.make for photograph in photographs),
+        origins=origins,
+    )
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
@@ -126,6 +125,12 @@ def input_warnings(recognition: Recognition | None, origins: Sequence[FileOrigin
     return recognized + [
         Notice("developed" if is_developed else "edited", {"editor": editor}) for editor, is_developed in editors
     ]
+
+
+def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Prior:
+    """Return the prior shifted by what the files and the user say, and by the levels of log footage."""
+    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
+    return replace(informed, plain=0.0) if any(origin.names_device for origin in origins) else informed
 
 
 def _window_estimates(

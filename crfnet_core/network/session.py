@@ -1,7 +1,5 @@
 """A graph in onnxruntime, its outputs checked."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,8 +1,7 @@
 """The posterior in one word: usable, or not to be trusted."""
 
-from __future__ import annotations
-
 from enum import StrEnum
+from typing import Self
 
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.posterior.posterior import Posterior
@@ -21,13 +20,13 @@ class Verdict(StrEnum):
     DO_NOT_TRUST = "do not trust"
 
     @classmethod
-    def from_posterior(cls, posterior: Posterior) -> Verdict:
+    def from_posterior(cls, posterior: Posterior) -> Self:
         """Return the verdict on the answer of a posterior."""
         if sum(posterior.families[family] for family in UNUSUAL) > UNUSUAL_LIMIT:
             return cls.DO_NOT_TRUST
         return cls.from_shape_error(posterior.expected_shape_error)
 
     @classmethod
-    def from_shape_error(cls, stops: float) -> Verdict:
+    def from_shape_error(cls, stops: float) -> Self:
         """Return the verdict on an answer by its expected shape error."""
         return cls.DO_NOT_TRUST if stops > USABLE_STOPS else cls.USABLE

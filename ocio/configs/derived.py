@@ -5,8 +5,6 @@ where they lie: the search path of the new config names the folders of the base 
 next to the new config. Nothing of the base is changed, nothing is deleted.
 """
 
-from __future__ import annotations
-
 import copy
 import os
 from collections.abc import Collection, Mapping, Sequence

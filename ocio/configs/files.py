@@ -1,7 +1,5 @@
 """OpenColorIO config files: load one of bounded size; write one after OpenColorIO has checked it against its LUTs."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Mapping

@@ -3,8 +3,6 @@
 It needs matplotlib, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,7 @@
 """Facts about photographs and estimates in words, for the command, JSON, LUT files and the sheet."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -24,7 +23,7 @@ class PhotoFacts:
     has_gain_map: bool = False  # so that the base picture was read
 
     @classmethod
-    def from_photo(cls, photo: Photo) -> PhotoFacts:
+    def from_photo(cls, photo: Photo) -> Self:
         """Return the facts of a photograph."""
         height, width = photo.shape[:2]
         has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map

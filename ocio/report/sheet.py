@@ -3,8 +3,6 @@
 It needs matplotlib, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -75,7 +73,7 @@ def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *,
 
 
 @contextmanager
-def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
+def sheet_figure(path: Path) -> Iterator[Figure]:
     """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes.
 
     Raise PlateError if the file cannot be written.
@@ -87,7 +85,7 @@ def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
         figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
         FigureCanvasAgg(figure)
         yield figure
-        with atomic_write(path, overwrite=overwrite, error=PlateError) as temporary:
+        with atomic_write(path, error=PlateError) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
 
 

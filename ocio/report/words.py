@@ -1,7 +1,5 @@
 """Estimates, plates and LUTs in words: the lines that the command and the add-on show."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path

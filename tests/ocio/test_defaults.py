@@ -6,7 +6,8 @@ from crfnet import defaults
 from crfnet.plates.exr import SAMPLE_TYPES
 from crfnet.report import words
 from crfnet_core.photograph.metadata import Device
-from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packaged_priors, verdict
+from crfnet_core.posterior import UNUSUAL, Family, Verdict, verdict
+from crfnet_core.posterior.prior import DEFAULT_PRIOR, packaged_priors
 
 
 def test_the_largest_exposure_of_white_fits_into_half_floats():

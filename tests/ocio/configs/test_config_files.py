@@ -130,9 +130,8 @@ class TestLoading:
         declared = ", ".join(f'{name}: "{value}"' for name, value in variables.items())
         text = portable_config([]).serialize().replace("environment:\n  {}", f"environment: {{{declared}}}")
         (tmp_path / "config.ocio").write_text(text)
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_variables"):
             load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_variables"
 
     def test_variables_of_variables_are_accepted(self, tmp_path):
         text = portable_config([]).serialize()
