@@ -33,12 +33,10 @@ def look(addon):
     return run
 
 
-def save(path, view, size=(256, 256)):
-    """Save the output of the compositor as an 8-bit PNG file through a view transform, and read the file."""
+def save(path, size=(256, 256)):
+    """Save the output of the compositor as an 8-bit PNG file, and read the file."""
     scene = bpy.context.scene
     rendered(scene, path.with_suffix(".exr"), size)
-    scene.view_settings.view_transform = view
-    scene.view_settings.look = "None"
     scene.render.image_settings.file_format = "PNG"
     scene.render.image_settings.color_depth, scene.render.image_settings.color_mode = "8", "RGBA"
     scene.render.filepath = str(path)
@@ -71,21 +69,23 @@ def test_it_undoes_it_in_another_working_space(look, plate_file, codes, tmp_path
     bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
     try:
         look(plate_file)
-        saved = save(tmp_path / "saved.png", "Standard")
+        saved = save(tmp_path / "saved.png")
     finally:
         bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
     assert np.abs(saved[..., :3] - codes).max() <= 1
 
 
-def test_a_render_saved_through_standard_is_the_plate(look, plate_file, codes, tmp_path):
+def test_the_view_becomes_standard_and_a_saved_render_is_the_plate(look, plate_file, codes, tmp_path):
+    assert bpy.context.scene.view_settings.view_transform == "AgX"
     look(plate_file, exposure=1)
-    assert np.array_equal(save(tmp_path / "saved.png", "Standard")[..., :3], codes)
+    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
 
 
 def test_code_values_saved_through_raw_are_the_plate(look, plate_file, codes, tmp_path):
     _, node = look(plate_file, exposure=1)
     scene_tree().links.new(node.outputs["Code Values"], output().inputs[0])
-    assert np.array_equal(save(tmp_path / "saved.png", "Raw")[..., :3], codes)
+    bpy.context.scene.view_settings.view_transform = "Raw"
+    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
 
 
 def test_light_beyond_the_camera_clips(look, composited, plate_file):
