@@ -30,13 +30,11 @@ def gather_job(
     """Return the job of a plate: to apply its stored estimate (`is_estimated`), or to estimate its response anew.
 
     `arguments` of the operator take precedence over the settings of the plate. Raise AddonError if no response can be
-    estimated from the plate, its file is not found, or an estimate is to be applied and Apply As is Estimate Only;
-    ConfigError if the config lacks a color space that the nodes need.
+    estimated from the plate, or its file is not found; ConfigError if the config lacks a color space that the nodes
+    need.
     """
     settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
-    if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
-        raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
     plate = plates.plate_of(datablock)
     if chosen["apply"] == ApplyMode.NODES:
         if not plates.is_shown(datablock):
@@ -82,6 +80,7 @@ def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -
         folder=absolute(chosen["folder"]) or _usual_folder(mode, plate),
         depth=chosen["depth"],
         overwrite=chosen["overwrite"],
+        is_composed=chosen["compose"],
         despite_verdict=despite_verdict,
     )
 

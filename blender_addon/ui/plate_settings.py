@@ -2,6 +2,7 @@
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
 from contextlib import suppress
+from typing import Any
 
 import bpy
 
@@ -38,8 +39,21 @@ DEVICES = (
     ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 
+#: The label of the choice of a ready comp.
+COMPOSE = "Compose Render over Plate"
+
 #: Largest exposure in either direction, in stops: `crfnet.defaults.MAX_EXPOSURE`, without importing the wheel.
 MAX_EXPOSURE = 15
+
+#: The property of the exposure; a plate's setting has a callback, too.
+EXPOSURE: dict[str, Any] = {
+    "name": "Exposure",
+    "description": "Stops added on top of the anchor. The nodes of an applied response follow at once",
+    "soft_min": -6,
+    "soft_max": 6,
+    "min": -MAX_EXPOSURE,
+    "max": MAX_EXPOSURE,
+}
 
 #: The names of the ways to apply a response, by the order of their enumeration.
 _MODES = [item[0] for item in APPLY_MODES]
@@ -74,14 +88,8 @@ class PlateChoices:
         max=1.0,
         precision=3,
     )
-    exposure: bpy.props.FloatProperty(
-        name="Exposure",
-        description="Stops added on top of the anchor. Applying sets the Exposure of the node group, too",
-        soft_min=-6,
-        soft_max=6,
-        min=-MAX_EXPOSURE,
-        max=MAX_EXPOSURE,
-    )
+    exposure: bpy.props.FloatProperty(**EXPOSURE)
+    compose: bpy.props.BoolProperty(name=COMPOSE, description="Put the render over a plate that no node shows yet")
     folder: bpy.props.StringProperty(
         name="Folder",
         description="Folder for new files. Empty: the folder of the preferences, of the plate or of the .blend file",
@@ -118,16 +126,43 @@ class PlateChoices:
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
+def _choose(settings: bpy.types.PropertyGroup, number: int) -> None:
+    """Choose how to apply the response of a plate, and of plates for which nothing is chosen yet."""
+    settings.chosen = preferences().apply_as = _MODES[number]
+    bpy.context.preferences.is_dirty = True  # Blender saves them when it quits
+
+
+def _expose_nodes(settings: bpy.types.PropertyGroup, _: bpy.types.Context) -> None:
+    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
+    plate = settings.id_data
+    applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
+    if applied is None or applied["apply"] != "NODES":
+        return
+    stops = stored_estimate.exposure(plate) + settings.exposure - applied["exposure"]
+    stored_estimate.set_entry(plate, stored_estimate.EXPOSURE, stops)
+    applied["exposure"] = settings.exposure
+    compositor.set_exposure(plate, stops)
+
+
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
-    """The settings of one plate; until `apply` is set, the preferences count."""
+    """The settings of one plate; until `apply` is set, the preferences count, and the compositor for `compose`."""
 
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
+    chosen_comp: bpy.props.IntProperty(options={"HIDDEN"}, default=-1)
     apply: bpy.props.EnumProperty(
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
-        get=lambda self: _MODES.index(self.chosen or preferences().apply),
-        set=lambda self, number: setattr(self, "chosen", _MODES[number]),
+        get=lambda self: _MODES.index(self.chosen if self.chosen in _MODES else preferences().apply_as),
+        set=_choose,
+    )
+    exposure: bpy.props.FloatProperty(**EXPOSURE, update=_expose_nodes)
+    compose: bpy.props.BoolProperty(
+        name=COMPOSE,
+        description="Scale the plate to the render, and put all that went to the output over it, with a transparent"
+        " film. On at first unless the compositor has nodes of yours",
+        get=lambda self: compositor.is_untouched(bpy.context) if self.chosen_comp < 0 else bool(self.chosen_comp),
+        set=lambda self, is_wanted: setattr(self, "chosen_comp", int(is_wanted)),
     )
 
 
