@@ -10,10 +10,11 @@ from crfnet.options import device_name
 from ..work.errors import AddonError
 from ..work.job import ApplyMode, Job
 from ..work.run import CompletedJob
+from ..work.wording import shortened
 from ..work.writers import Baked, Exported
 from . import compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
-from .plates import Datablock, alpha_mode, datablock_of_plate
+from .plates import BAKED_FROM, Datablock, alpha_mode, datablock_of_plate
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -92,6 +93,7 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
         if isinstance(datablock, bpy.types.MovieClip)
         else _linear_image(datablock, baked)
     )
+    linear[BAKED_FROM] = datablock.name
     space = context.space_data
     if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
         space.image = linear
@@ -99,7 +101,7 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
             timing.set_on(space.image_user)
     if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
         space.clip = linear
-    return f"the linear plate is written to {baked.files[0].parent} and loaded"
+    return f"the linear plate is written to {shortened(str(baked.files[0].parent))} and loaded"
 
 
 def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:

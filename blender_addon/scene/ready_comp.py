@@ -55,8 +55,9 @@ def is_free(viewer: bpy.types.Node, render: Socket | None = None) -> bool:
 def _end(output: bpy.types.Node) -> Socket:
     """Return the input of the output of a tree, or of a Camera Look before it."""
     end = output.inputs[0]
-    node = end.links[0].from_node if end.links else None
-    return node.inputs["Image"] if LOOK in (getattr(node, "node_tree", None) or {}) else end
+    if end.links and LOOK in (getattr(end.links[0].from_node, "node_tree", None) or {}):
+        return end.links[0].from_node.inputs["Image"]
+    return end
 
 
 def _render(tree: bpy.types.NodeTree) -> Socket:

@@ -102,8 +102,9 @@ class PlateChoices:
     )
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
-        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear, and"
-        " take OpenEXR files for encoded that do not say what they hold",
+        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear."
+        " OpenEXR files are never estimated: where they do not say what they hold, a response from a LUT or another"
+        " plate then takes them for encoded",
     )
     camera: bpy.props.StringProperty(
         name="Camera",
