@@ -165,13 +165,15 @@ def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
 
 
 def _link(tree: bpy.types.NodeTree, node: bpy.types.Node) -> None:
-    """Put a look between the output of a tree and what leads to it, unless it is there already."""
+    """Put a look between the output of a tree, with its viewers, and what leads to it, unless it is there already."""
     output = output_of(tree)
     if output is None:
         return
     source = output.inputs[0].links[0].from_socket if output.inputs[0].links else None
     if source is not None and source.node == node:
         return
+    viewers = [] if source is None else [link.to_socket for link in source.links if link.to_node.type == "VIEWER"]
+    for target in (output.inputs[0], *viewers):
+        tree.links.new(node.outputs["Image"], target)
     if source is not None:
         tree.links.new(source, node.inputs["Image"])
-    tree.links.new(node.outputs["Image"], output.inputs[0])

@@ -30,6 +30,7 @@ def put_render_over_plate(output: bpy.types.Node, place: tuple[float, float]) ->
     viewer = next((node for node in tree.nodes if node.type == "VIEWER" and is_free(node, render)), None)
     viewer = viewer or tree.nodes.new("CompositorNodeViewer")
     background, foreground = (socket for socket in over.inputs if socket.type == "RGBA")
+    foreground.default_value = (0, 0, 0, 0)  # of no render: white at first
     tree.links.new(scale.outputs["Image"], background)
     tree.links.new(render, foreground)
     tree.links.new(over.outputs["Image"], end)

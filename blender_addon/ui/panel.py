@@ -12,8 +12,8 @@ from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
-from .more.match_view import draw_view
 from .more.panel import draw_more
+from .more.standard_view import draw_view
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .plate_settings import is_applied, is_to_be_applied
 
@@ -59,7 +59,7 @@ class ResponsePanel:
             _draw_warnings(layout, context, datablock)
             draw_details(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
-            draw_more(layout, context, datablock)
+            draw_more(layout, datablock)
             _draw_advanced(layout, context, datablock.camera_response_settings)
 
 

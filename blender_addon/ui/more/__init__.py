@@ -4,6 +4,6 @@
 panel         the sub-panel
 add_look      "Add Camera Look" in the compositor
 load_lut      "Load Response from LUT"
-match_view    "Match the Photograph", drawn above the sub-panel
 other_plates  "Apply to Other Plates"
+standard_view "Standard View", drawn above the sub-panel
 """

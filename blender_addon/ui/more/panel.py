@@ -11,7 +11,7 @@ from .load_lut import CRF_OT_load_lut
 from .other_plates import CRF_OT_copy_response
 
 
-def draw_more(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+def draw_more(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
     """Draw further uses of the response of a plate, and the button that loads one."""
     header, body = layout.panel("CRF_more", default_closed=True)
     header.label(text="More")
@@ -21,6 +21,5 @@ def draw_more(layout: bpy.types.UILayout, context: bpy.types.Context, datablock:
     column.operator(CRF_OT_load_lut.bl_idname, icon="FILE_FOLDER")
     if not stored_estimate.is_stored(datablock):
         return
-    if context.space_data.type == "NODE_EDITOR":
-        column.operator(CRF_OT_add_look.bl_idname, icon="CAMERA_DATA")
+    column.operator(CRF_OT_add_look.bl_idname, icon="CAMERA_DATA")
     column.operator(CRF_OT_copy_response.bl_idname, icon="DUPLICATE")
