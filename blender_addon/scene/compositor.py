@@ -21,7 +21,7 @@ from .node_links import (
     output_of,
 )
 from .plates import Datablock, datablock_of_node
-from .ready_comp import is_free, is_plain, put_render_over_plate
+from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -119,12 +119,6 @@ def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
     """Return whether the render can be put over a plate: the shown tree has an output, and the plate leads nowhere."""
     tree = tree_shown_in(context)
     return tree is None or (output_of(tree) is not None and not _leads_on(tree, plate))
-
-
-def is_untouched(context: bpy.types.Context) -> bool:
-    """Return whether there is no compositor yet, or the one that is shown only hands the render through."""
-    tree = tree_shown_in(context)
-    return tree is None or is_plain(tree)
 
 
 def is_switched_off(scene: bpy.types.Scene) -> bool:

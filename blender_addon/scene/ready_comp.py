@@ -12,8 +12,10 @@ from .node_links import LOOK, linearizes, output_of
 _PASSING = ("R_LAYERS", "REROUTE")
 
 
-def is_plain(tree: bpy.types.NodeTree) -> bool:
-    """Return whether a compositor tree has an output and only hands the render through, so that it is nobody's work."""
+def is_plain(tree: bpy.types.NodeTree | None) -> bool:
+    """Return whether there is no compositor tree yet, or it has an output and only hands the render through."""
+    if tree is None:
+        return True
     linked = (node for node in tree.nodes if any(output.is_linked for output in node.outputs))
     return output_of(tree) is not None and all(node.type in _PASSING for node in linked)
 

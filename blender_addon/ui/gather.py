@@ -61,7 +61,14 @@ def gather_job(
             origin=stored_estimate.origin(datablock) if is_estimated else "",
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),
-        output=_output(plate, chosen, despite_verdict=despite_verdict),
+        output=Output(
+            mode=ApplyMode(chosen["apply"]),
+            folder=absolute(chosen["folder"]) or _usual_folder(chosen["apply"], plate),
+            depth=chosen["depth"],
+            overwrite=chosen["overwrite"],
+            is_composed=chosen["compose"],
+            despite_verdict=despite_verdict,
+        ),
         config=color_management.running_config(),
     )
 
@@ -72,20 +79,7 @@ def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | N
     return stored_estimate.primaries(datablock) if is_same and not stored_estimate.origin(datablock) else None
 
 
-def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:
-    """Return what becomes of the response."""
-    mode = ApplyMode(chosen["apply"])
-    return Output(
-        mode=mode,
-        folder=absolute(chosen["folder"]) or _usual_folder(mode, plate),
-        depth=chosen["depth"],
-        overwrite=chosen["overwrite"],
-        is_composed=chosen["compose"],
-        despite_verdict=despite_verdict,
-    )
-
-
-def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
+def _usual_folder(mode: str, plate: Plate) -> Path | None:
     """Return the folder for files if none was chosen: of the preferences, the plate or the .blend file."""
     if mode in WITHOUT_FILES:
         return None

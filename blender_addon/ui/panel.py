@@ -20,9 +20,6 @@ from .plate_settings import is_applied, is_to_be_applied
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
 
-#: The width of the word "stops", in units of the interface.
-_UNIT_WIDTH = 2.5
-
 
 class ResponsePanel:
     """The panel, which is the same in every editor."""
@@ -36,7 +33,7 @@ class ResponsePanel:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether the editor can show a plate: the node editor can only as the compositor."""
-        return context.space_data.type != "NODE_EDITOR" or context.space_data.tree_type == "CompositorNodeTree"
+        return getattr(context.space_data, "tree_type", "CompositorNodeTree") == "CompositorNodeTree"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
@@ -85,13 +82,11 @@ class CRF_PT_node(ResponsePanel, bpy.types.Panel):
 
 
 def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """Draw the entries of a menu; the node editor has them only as the compositor."""
-    space = context.space_data
-    if space is not None and space.type == "NODE_EDITOR" and space.tree_type != "CompositorNodeTree":
-        return
-    menu.layout.separator()
-    menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
-    menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
+    """Draw the entries of a menu, where there is a panel."""
+    if ResponsePanel.poll(context):
+        menu.layout.separator()
+        menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
+        menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
 
 
 def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
@@ -142,11 +137,7 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     settings, column = datablock.camera_response_settings, _split_column(layout)
     if settings.apply == "NODES" and compositor.can_compose(context, datablock):
         layout.prop(settings, "compose")
-    row = column.row(align=True)
-    row.prop(settings, "exposure")
-    unit = row.row()
-    unit.ui_units_x = _UNIT_WIDTH
-    unit.label(text="stops")
+    column.prop(settings, "exposure")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in WITHOUT_FILES:

@@ -2,12 +2,12 @@
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
 from contextlib import suppress
-from typing import Any
 
 import bpy
 
 from .. import lazy_import
 from ..scene import compositor, plates, stored_estimate
+from ..scene.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
@@ -39,21 +39,8 @@ DEVICES = (
     ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 
-#: The label of the choice of a ready comp.
-COMPOSE = "Compose Render over Plate"
-
 #: Largest exposure in either direction, in stops: `crfnet.defaults.MAX_EXPOSURE`, without importing the wheel.
 MAX_EXPOSURE = 15
-
-#: The property of the exposure; a plate's setting has a callback, too.
-EXPOSURE: dict[str, Any] = {
-    "name": "Exposure",
-    "description": "Stops added on top of the anchor. The nodes of an applied response follow at once",
-    "soft_min": -6,
-    "soft_max": 6,
-    "min": -MAX_EXPOSURE,
-    "max": MAX_EXPOSURE,
-}
 
 #: The names of the ways to apply a response, by the order of their enumeration.
 _MODES = [item[0] for item in APPLY_MODES]
@@ -72,6 +59,18 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     return cameras
 
 
+def _expose_nodes(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
+    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
+    plate = settings.id_data
+    applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
+    if applied is None or applied["apply"] != "NODES":
+        return
+    stops = stored_estimate.exposure(plate) + settings.exposure - applied["exposure"]
+    stored_estimate.set_entry(plate, stored_estimate.EXPOSURE, stops)
+    applied["exposure"] = settings.exposure
+    compositor.set_exposure(plate, stops)
+
+
 class PlateChoices:
     """The choices for a plate that the panel offers and the operators take as arguments."""
 
@@ -88,8 +87,18 @@ class PlateChoices:
         max=1.0,
         precision=3,
     )
-    exposure: bpy.props.FloatProperty(**EXPOSURE)
-    compose: bpy.props.BoolProperty(name=COMPOSE, description="Put the render over a plate that no node shows yet")
+    exposure: bpy.props.FloatProperty(
+        name="Exposure",
+        description="Stops added on top of the anchor. The nodes of an applied response follow at once",
+        soft_min=-6,
+        soft_max=6,
+        min=-MAX_EXPOSURE,
+        max=MAX_EXPOSURE,
+        update=_expose_nodes,
+    )
+    compose: bpy.props.BoolProperty(
+        name="Compose Render over Plate", description="Put the render over a plate that no node shows yet"
+    )
     folder: bpy.props.StringProperty(
         name="Folder",
         description="Folder for new files. Empty: the folder of the preferences, of the plate or of the .blend file",
@@ -133,18 +142,6 @@ def _choose(settings: bpy.types.PropertyGroup, number: int) -> None:
     bpy.context.preferences.is_dirty = True  # Blender saves them when it quits
 
 
-def _expose_nodes(settings: bpy.types.PropertyGroup, _: bpy.types.Context) -> None:
-    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
-    plate = settings.id_data
-    applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
-    if applied is None or applied["apply"] != "NODES":
-        return
-    stops = stored_estimate.exposure(plate) + settings.exposure - applied["exposure"]
-    stored_estimate.set_entry(plate, stored_estimate.EXPOSURE, stops)
-    applied["exposure"] = settings.exposure
-    compositor.set_exposure(plate, stops)
-
-
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
     """The settings of one plate; until `apply` is set, the preferences count, and the compositor for `compose`."""
 
@@ -157,12 +154,13 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
         get=lambda self: _MODES.index(self.chosen if self.chosen in _MODES else preferences().apply_as),
         set=_choose,
     )
-    exposure: bpy.props.FloatProperty(**EXPOSURE, update=_expose_nodes)
     compose: bpy.props.BoolProperty(
-        name=COMPOSE,
+        name="Compose Render over Plate",
         description="Scale the plate to the render, and put all that went to the output over it, with a transparent"
         " film. On at first unless the compositor has nodes of yours",
-        get=lambda self: compositor.is_untouched(bpy.context) if self.chosen_comp < 0 else bool(self.chosen_comp),
+        get=lambda self: (
+            is_plain(compositor.tree_shown_in(bpy.context)) if self.chosen_comp < 0 else bool(self.chosen_comp)
+        ),
         set=lambda self, is_wanted: setattr(self, "chosen_comp", int(is_wanted)),
     )
 

@@ -35,13 +35,6 @@ class CRF_OT_compare(bpy.types.Operator):
     is_after: bpy.props.BoolProperty(name="After", description="Show the linear plate", options={"SKIP_SAVE"})
 
     @classmethod
-    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip of one of the two buttons."""
-        if properties.is_after:
-            return "Show the linear plate with the present exposure. Nothing but the view changes"
-        return "Show the plate as it is in the file"
-
-    @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether an Image Editor shows a plate with an estimate."""
         return _is_image_editor(context) and stored_estimate.is_stored(plates.active_datablock(context))
