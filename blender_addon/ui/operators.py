@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..work.run import CompletedJob
 
 #: The use of a response by "Estimate Camera Response", unless a script says otherwise.
-ESTIMATE_ONLY = ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 3)
+ESTIMATE_ONLY = ("ESTIMATE", "Estimate Only", "Show the response and change nothing else")
 
 #: The report on an estimate that is not applied because it is not to be trusted.
 WITHHELD = "not applied; to use it all the same, press Apply Anyway"

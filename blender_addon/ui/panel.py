@@ -129,14 +129,15 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
     draw_text(layout, state, letters, icon=state_icon)
     _draw_settings(layout, context, datablock)
     if has_been and settings.apply != "EXPORT":
-        draw_view(layout, context)
+        draw_view(layout, context, has_nodes=settings.apply == "NODES")
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw the settings that matter for the chosen way to apply the response."""
-    settings, column = datablock.camera_response_settings, _split_column(layout)
+    settings = datablock.camera_response_settings
     if settings.apply == "NODES" and compositor.can_compose(context, datablock):
         layout.prop(settings, "compose")
+    column = _split_column(layout)
     column.prop(settings, "exposure")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")

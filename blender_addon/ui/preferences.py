@@ -12,14 +12,12 @@ ADDON = __package__.rpartition(".")[0]
 
 #: The ways to apply a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
-    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor", "NODETREE", 0),
-    ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them", "FILE_IMAGE", 1),
+    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor"),
+    ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them"),
     (
         "EXPORT",
         "Export",
-        "Write LUT files, and a copy of the OpenColorIO config that Blender runs on with a color space for the plate",
-        "EXPORT",
-        2,
+        "Write LUT files, and a copy of Blender's OpenColorIO config with a color space for the plate",
     ),
 )
 

@@ -28,7 +28,7 @@ class CRF_OT_standard_view(bpy.types.Operator):
         return {"FINISHED"} if color_management.set_standard_view(context.scene) else {"CANCELLED"}
 
 
-def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context, *, has_nodes: bool) -> None:
     """Draw that the scene's view transform darkens the highlights of a plate, and the buttons that change it."""
     view = color_management.darker_view(context.scene)
     if not view:
@@ -37,7 +37,8 @@ def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if color_management.has_standard_view(context.scene):
         column = layout.column(align=True)
         column.operator(CRF_OT_standard_view.bl_idname, icon="HIDE_OFF")
-        column.operator(CRF_OT_add_look.bl_idname, text="Match the Photograph", icon="CAMERA_DATA")
+        if has_nodes:
+            column.operator(CRF_OT_add_look.bl_idname, text="Match the Photograph", icon="CAMERA_DATA")
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OT_standard_view,))
