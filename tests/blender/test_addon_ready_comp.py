@@ -64,6 +64,7 @@ def test_a_plate_of_another_shape_fills_the_frame(image, tmp_path):
     pixels = rendered(bpy.context.scene, tmp_path / "wide.exr", (128, 64))
     assert pixels.shape[:2] == (64, 128)
     assert (pixels[..., 3] == 1).all()
+    assert pixels.min() < 0.1  # it is not hidden where there is no render
 
 
 @pytest.mark.parametrize("choices", [{}, {"compose": True}])
