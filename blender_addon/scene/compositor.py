@@ -42,14 +42,9 @@ class FrameTiming:
         return cls(user.frame_duration, user.frame_start, user.frame_offset, user.use_cyclic)
 
     @classmethod
-    def by_number(cls, frames: Sequence[int]) -> FrameTiming:
-        """Return the timing that shows every file on the frame of its number."""
-        return cls(frames[-1] - frames[0] + 1, frames[0], frames[0] - 1)
-
-    @classmethod
-    def from_scene_start(cls, frames: Sequence[int]) -> FrameTiming:
-        """Return the timing that shows the first file on frame 1 of the scene, as where Blender opens a sequence."""
-        return cls(frames[-1] - frames[0] + 1, 1, frames[0] - 1)
+    def by_number(cls, frames: Sequence[int], *, start: int) -> FrameTiming:
+        """Return the timing that shows the file of the first number on a frame of the scene."""
+        return cls(frames[-1] - frames[0] + 1, start, frames[0] - 1)
 
     def shows_any(self, frames: Sequence[int]) -> bool:
         """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
@@ -83,7 +78,7 @@ def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int
         return None
     timings = map(FrameTiming.from_user, _users(context, plate))
     set_by_user = (timing for timing in timings if timing.duration > 1 and timing.shows_any(frames))
-    return next(set_by_user, FrameTiming.by_number(frames))
+    return next(set_by_user, FrameTiming.by_number(frames, start=frames[0]))
 
 
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
@@ -118,7 +113,9 @@ def tree_shown_in(context: bpy.types.Context) -> bpy.types.NodeTree | None:
 def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
     """Return whether the render can be put over a plate: the shown tree has an output, and the plate leads nowhere."""
     tree = tree_shown_in(context)
-    return tree is None or (output_of(tree) is not None and not _leads_on(tree, plate))
+    if tree is None:
+        return True
+    return output_of(tree) is not None and not any(n.outputs["Image"].is_linked for n in _sources(tree, plate))
 
 
 def is_switched_off(scene: bpy.types.Scene) -> bool:
@@ -131,10 +128,10 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
 
     The links from the plate then start at the group. A group that follows already, whatever stands between, is only
     brought up to date, as all nodes of the group in the file are. If no node shows the plate, one is added, with a
-    viewer. If the plate leads nowhere, the render is put over it on demand.
+    viewer. On demand the render is put over it; see `can_compose`.
     """
-    leads_on, sources = _leads_on(tree, wanted.plate), _sources(tree, wanted.plate)
-    if not sources or (wanted.is_composed and not leads_on):
+    sources = _sources(tree, wanted.plate)
+    if not sources or wanted.is_composed:
         sources = sources or [_add_plate(tree, wanted)]
         _link_on(tree, sources[0], wanted)
     for source in sources:
@@ -236,11 +233,6 @@ def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNode
 def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show a plate or its code values."""
     return [node for node in tree.nodes if datablock_of_node(node) == plate]
-
-
-def _leads_on(tree: bpy.types.NodeTree, plate: Datablock) -> bool:
-    """Return whether a node of a tree that shows a plate is linked to another node."""
-    return any(node.outputs["Image"].is_linked for node in _sources(tree, plate))
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:

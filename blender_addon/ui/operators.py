@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from ..work.job import Job
     from ..work.run import CompletedJob
 
-#: The use of a response by "Estimate Camera Response", unless a script says otherwise.
-ESTIMATE_ONLY = ("ESTIMATE", "Estimate Only", "Show the response and change nothing else")
-
 #: The report on an estimate that is not applied because it is not to be trusted.
 WITHHELD = "not applied; to use it all the same, press Apply Anyway"
 
@@ -98,7 +95,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
             raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
         if not self.is_estimated:
-            arguments.setdefault("apply", ESTIMATE_ONLY[0])
+            arguments.setdefault("apply", "ESTIMATE")
         gather = lazy_import.load(".ui.gather")
         return gather.gather_job(
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
@@ -132,8 +129,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
     apply: bpy.props.EnumProperty(
         name="Apply As",
         description="What becomes of the response",
-        items=(ESTIMATE_ONLY, *APPLY_MODES),
-        default="ESTIMATE",
+        items=(("ESTIMATE", "Estimate Only", "Change nothing else"), *APPLY_MODES),
     )
 
 

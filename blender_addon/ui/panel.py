@@ -12,7 +12,9 @@ from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
-from .more.panel import draw_more
+from .more.add_look import CRF_OT_add_look
+from .more.load_lut import CRF_OT_load_lut
+from .more.other_plates import CRF_OT_copy_response
 from .more.standard_view import draw_view
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .plate_settings import is_applied, is_to_be_applied
@@ -56,7 +58,7 @@ class ResponsePanel:
             _draw_warnings(layout, context, datablock)
             draw_details(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
-            draw_more(layout, datablock)
+            _draw_more(layout, is_stored=is_stored)
             _draw_advanced(layout, context, datablock.camera_response_settings)
 
 
@@ -144,6 +146,18 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     if settings.apply not in WITHOUT_FILES:
         column.prop(settings, "folder", placeholder="Folder of the plate")
         column.prop(settings, "overwrite")
+
+
+def _draw_more(layout: bpy.types.UILayout, *, is_stored: bool) -> None:
+    """Draw further uses of the response of a plate, and the button that loads one, closed at first."""
+    header, body = layout.panel("CRF_more", default_closed=True)
+    header.label(text="More")
+    if body is not None:
+        column = body.column(align=True)
+        column.operator(CRF_OT_load_lut.bl_idname, icon="FILE_FOLDER")
+        if is_stored:
+            column.operator(CRF_OT_add_look.bl_idname, icon="CAMERA_DATA")
+            column.operator(CRF_OT_copy_response.bl_idname, icon="DUPLICATE")
 
 
 def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:

@@ -127,7 +127,7 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
         if hasattr(user, "frame_duration"):  # not the plate's node group
             with suppress(*expected_errors()):  # reported where a response is estimated
                 frames = lazy_import.load(".work.frame_files").frames_of(plates.plate_of(image)).numbers
-                compositor.FrameTiming.from_scene_start(frames).set_on(user)
+                compositor.FrameTiming.by_number(frames, start=1).set_on(user)
         return {"FINISHED"}
 
 
