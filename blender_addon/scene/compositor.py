@@ -99,14 +99,9 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
 
 def tree_shown_in(context: bpy.types.Context) -> bpy.types.NodeTree | None:
     """Return the compositor tree that the node editor shows, or else the scene's; None if the scene has none yet."""
-    space, scene = context.space_data, context.scene
-    if (
-        space is not None
-        and space.type == "NODE_EDITOR"
-        and space.tree_type == "CompositorNodeTree"
-        and space.edit_tree
-    ):
-        return space.edit_tree
+    tree, scene = getattr(context.space_data, "edit_tree", None), context.scene
+    if tree is not None and tree.bl_idname == "CompositorNodeTree":
+        return tree
     return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
 
 
