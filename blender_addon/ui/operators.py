@@ -35,9 +35,6 @@ class PlateOperator(ChosenPlate, PlateChoices):
     data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
-    apply: bpy.props.EnumProperty(
-        name="Apply As", description="What becomes of the response", items=APPLY_MODES, default="ESTIMATE"
-    )
     anyway: bpy.props.BoolProperty(
         name="Anyway", description="Apply the response even if it is not to be trusted", options={"SKIP_SAVE"}
     )
@@ -97,6 +94,8 @@ class PlateOperator(ChosenPlate, PlateChoices):
         if is_doubted and not self.anyway:
             raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
+        if not self.is_estimated:
+            arguments.setdefault("apply", "ESTIMATE")
         gather = lazy_import.load(".ui.gather")
         return gather.gather_job(
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
@@ -118,14 +117,20 @@ class PlateOperator(ChosenPlate, PlateChoices):
 
 
 class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
-    """Estimate the camera's response from the active photograph, sequence or movie, and apply it as chosen."""
+    """Estimate the camera's response from the active photograph, sequence or movie; a script can have it applied."""
 
     bl_idname = "crf.estimate_response"
     bl_label = "Estimate Camera Response"
     bl_description = (
-        "Estimate the camera's response from the photograph, sequence or movie, and do with it what Apply As says"
+        "Estimate the camera's response from the photograph, sequence or movie. Nothing else changes until you apply it"
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    apply: bpy.props.EnumProperty(
+        name="Apply As",
+        description="What becomes of the response",
+        items=(("ESTIMATE", "Estimate Only", "Change nothing else"), *APPLY_MODES),
+    )
 
 
 class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
@@ -135,6 +140,8 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
     bl_label = "Apply Camera Response"
     bl_description = "Apply the response that was estimated for this plate, with the present settings"
     bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
 
     is_estimated = True
 

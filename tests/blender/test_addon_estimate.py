@@ -71,7 +71,9 @@ def test_undo_takes_everything_back(image):
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
     bpy.ops.ed.undo_push(message="estimate")
     assert any(group.name.startswith("Camera Response plate") for group in bpy.data.node_groups)
+    assert bpy.context.scene.render.film_transparent
     bpy.ops.ed.undo()
+    assert not bpy.context.scene.render.film_transparent
     image = bpy.data.images["plate.png"]
     assert "camera_response" not in image
     assert image.colorspace_settings.name == "sRGB"
