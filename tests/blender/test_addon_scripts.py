@@ -1,18 +1,15 @@
 """The add-on for scripts: the README's example and its tables, and the response that can be read."""
 
-import math
 import re
 import runpy
 import shutil
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from crfnet.luts.files import write_lut
-from crfnet.luts.lut1d import inverse_response_lut
-
-from .helpers import apply, bpy, curve_of, drawn_in, estimate, labels, load
+from .helpers import Panel, apply, bpy, curve_of, estimate, load
 
 TYPES = {"STRING": "str", "BOOLEAN": "bool", "FLOAT": "float"}
 
@@ -31,14 +28,12 @@ def table(readme, head):
 
 def stated(argument):
     """Type and default of an argument, as the README states them."""
-    if argument.type == "ENUM":
-        return [", ".join(f"`{item.identifier}`" for item in argument.enum_items), f"`{argument.default}`"]
-    limits = ""
-    default = f'`"{argument.default}"`' if argument.type == "STRING" else f"`{argument.default}`"
-    if argument.type == "FLOAT":
-        limits = f", {argument.hard_min:.3g} to {argument.hard_max:.3g}"
-        default = f"`{argument.default:.3g}`"
-    return [TYPES[argument.type] + limits, default]
+    match argument.type:
+        case "ENUM":
+            return [", ".join(f"`{item.identifier}`" for item in argument.enum_items), f"`{argument.default}`"]
+        case "FLOAT":
+            return [f"float, {argument.hard_min:.3g} to {argument.hard_max:.3g}", f"`{argument.default:.3g}`"]
+    return [TYPES[argument.type], f'`"{argument.default}"`' if argument.type == "STRING" else f"`{argument.default}`"]
 
 
 def test_the_readme_states_type_and_default_of_every_argument(addon, readme):
@@ -54,8 +49,7 @@ def test_the_readme_states_the_type_of_every_property(addon, readme):
     assert {name: cells[0] for name, cells in table(readme, "property").items()} == types
 
 
-def test_the_readmes_script_bakes_and_saves_a_response(addon, readme, plate, tmp_path, monkeypatch, capsys, in_editor):
-    """The saved file shows it without the plate."""
+def test_the_readmes_script_bakes_and_saves_a_response(addon, readme, plate, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PWD", str(tmp_path))  # from which Blender takes the working directory
     shutil.copy(plate, "plate.jpg")
@@ -64,13 +58,8 @@ def test_the_readmes_script_bakes_and_saves_a_response(addon, readme, plate, tmp
     runpy.run_path("script.py")
     assert re.search(r"^plate.jpg: (good|usable), expected error 0\.\d\d stop", capsys.readouterr().out, re.MULTILINE)
     assert (tmp_path / "plate_linear.exr").is_file()
-    curve = bpy.data.images["plate.jpg"].camera_response.curve
-    (tmp_path / "plate.jpg").unlink()
-    bpy.ops.wm.open_mainfile(filepath="plate.blend")
-    image = bpy.data.images["plate.jpg"]
-    assert image.camera_response.is_applied
-    np.testing.assert_array_equal(image.camera_response.curve, curve)
-    assert f"Expected error {image.camera_response.expected_error:.2f} stop" in labels(drawn_in(image, in_editor))
+    assert (tmp_path / "plate.blend").is_file()
+    assert bpy.data.images["plate.jpg"].camera_response.is_applied
 
 
 @pytest.mark.parametrize("kind", ["image", "clip"])
@@ -97,8 +86,9 @@ def test_what_was_applied_can_be_read(estimated):
     assert (estimated.camera_response.is_applied, estimated.camera_response.exposure) == (False, 1.5)
 
 
-def test_a_response_from_a_lut_has_no_verdict(image, tmp_path, true_response):
-    write_lut(tmp_path / "a.cube", inverse_response_lut(true_response))
-    bpy.ops.crf.load_lut(image=image.name, filepath=str(tmp_path / "a.cube"))
-    assert (image.camera_response.verdict, image.camera_response.origin) == ("", "Loaded from a.cube")
-    assert math.isnan(image.camera_response.expected_error)
+def test_the_preferences_have_a_button_for_the_documentation(addon):
+    panel = Panel()
+    type(addon).draw(panel, bpy.context)
+    assert ("operator", "wm.path_open", "Documentation", "HELP") in panel.layout.drawn
+    (path,) = (entry[2] for entry in panel.layout.drawn if entry[:2] == ("set", "filepath"))
+    assert "# The Blender add-on" in Path(path).read_text(encoding="utf-8")
