@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..work.job import Job
     from ..work.run import CompletedJob
 
-#: The report on an estimate that is not applied because it is not to be trusted, an error in scripts.
+#: The report on an estimate that is not applied because it is not to be trusted.
 WITHHELD = "not applied; to use it all the same, press Apply Anyway (anyway=True)"
 
 

@@ -10,9 +10,6 @@ from ..work.errors import AddonError
 #: The name by which Blender knows the add-on: the name of its root package.
 ADDON = __package__.rpartition(".")[0]
 
-#: The documentation, which comes with the add-on.
-README = Path(__file__).parents[1] / "README.md"
-
 #: The uses of a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
     ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 0),
@@ -60,7 +57,8 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         layout.prop(self, "apply")
         layout.prop(self, "folder", placeholder="The plate's own folder")
         layout.prop(self, "model", placeholder="The add-on's own model")
-        layout.operator("wm.path_open", text="Documentation", icon="HELP").filepath = str(README)
+        button = layout.operator("wm.path_open", text="Documentation", icon="HELP")
+        button.filepath = str(Path(__file__).parents[1] / "README.md")
 
 
 def preferences() -> CRF_AddonPreferences:

@@ -37,9 +37,12 @@ def stated(argument):
 
 
 def test_the_readme_states_type_and_default_of_every_argument(addon, readme):
-    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
-        arguments = {each.identifier: stated(each) for each in operator.get_rna_type().properties if each.is_runtime}
-        assert {name: cells[:2] for name, cells in table(readme, "argument").items()} == arguments
+    estimating, applying = (
+        {each.identifier: stated(each) for each in operator.get_rna_type().properties if each.is_runtime}
+        for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response)
+    )
+    assert {name: cells[:2] for name, cells in table(readme, "argument").items()} == estimating
+    assert estimating == applying | {"apply": estimating["apply"]}
 
 
 def test_the_readme_states_the_type_of_every_property(addon, readme):
