@@ -58,6 +58,7 @@ def store(datablock: Datablock, estimate: ResponseEstimate) -> None:
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
     earlier = datablock[KEY].to_dict() if is_stored(datablock) else {}
     file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS) if earlier.get(name)}
+    datablock.pop(KEY, None)  # Blender 4.5 does not replace one that reading `camera_response` has made
     datablock[KEY] = {"layout": LAYOUT, **panel_text(estimate)._asdict(), **entries, **file_entries}
 
 

@@ -58,10 +58,6 @@ def test_without_a_readable_config_the_name_decides(check, tmp_path):
         check("ACEScg", config=tmp_path / "none.ocio")
 
 
-def test_blenders_guess_that_every_dpx_is_linear_does_not_count(check, tmp_path, codes):
-    check("Linear Rec.709", write_image(tmp_path / "video.dpx", codes))
-
-
 @pytest.fixture
 def tagged(tmp_path, codes):
     """A file that the estimator refuses for its metadata."""

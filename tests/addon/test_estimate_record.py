@@ -40,11 +40,6 @@ def test_an_estimate_comes_back_the_same(found):
     assert [type(origin.device) for origin in again.origins] == [Device, Device]
 
 
-def test_an_estimate_without_warnings_and_metadata_has_none_afterwards(found):
-    again = estimate_of(entries_of(dataclasses.replace(found, warnings=(), origins=())))
-    assert again.warnings == again.origins == ()
-
-
 def test_what_the_metadata_says_may_hold_any_character(found):
     odd = dataclasses.replace(found.origins[0], editor='a "写真" \\ editor', words=("saved by 写真", "scaled"))
     again = estimate_of(entries_of(dataclasses.replace(found, origins=(odd,))))
