@@ -53,15 +53,15 @@ def alpha_in_compositor(plate: Datablock) -> str:
     """
     if plate.source != "MOVIE":
         return alpha_mode(plate) or "STRAIGHT"
-    return "STRAIGHT" if _is_decoded_to_floats(plate) else "PREMUL"
+    return "STRAIGHT" if is_deep(plate) else "PREMUL"
 
 
-def _is_decoded_to_floats(movie: Datablock) -> bool:
-    """Return whether Blender decodes a movie to floats, as above 8 bits."""
-    if isinstance(movie, bpy.types.Image):
-        return movie.is_float
+def is_deep(plate: Datablock) -> bool:
+    """Return whether Blender reads a plate to floats, as above 8 bits."""
+    if isinstance(plate, bpy.types.Image):
+        return plate.is_float
     try:
-        image = bpy.data.images.load(bpy.path.abspath(movie.filepath))  # a clip does not say it
+        image = bpy.data.images.load(bpy.path.abspath(plate.filepath))  # a clip does not say it
     except RuntimeError:  # the file was removed meanwhile
         return False
     is_float = image.is_float

@@ -60,6 +60,17 @@ class NodeGrid:
             node.inputs[index].default_value = number
         return node.outputs[0]
 
+    def add(self, first: Socket, second: Socket, column: float, row: float) -> Socket:
+        """Return the socket of the sum of two colors, with the alpha of the first."""
+        node = self.node("ShaderNodeMix" if IS_BLENDER_5 else "CompositorNodeMixRGB", column, row=row)
+        if IS_BLENDER_5:
+            node.data_type = "RGBA"
+        node.blend_type, node.inputs[0].default_value = "ADD", 1
+        summands = [socket for socket in node.inputs if socket.type == "RGBA"]
+        for color, socket in zip((first, second), summands, strict=True):
+            self.link(color, socket)
+        return next(socket for socket in node.outputs if socket.type == "RGBA")
+
     def multiply_by_matrix(self, channels: list[Socket], matrix: Float64Array, column: float) -> list[Socket]:
         """Return the sockets of red, green and blue that are multiplied by a matrix, shape (3, 3)."""
         products = []
