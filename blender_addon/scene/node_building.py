@@ -16,9 +16,6 @@ IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 #: The distance between a group's node and its neighbors, and its width, in units of the node editor.
 GAP, WIDTH = 60, 220
 
-#: The beginning of the names of nodes that Blender 5.0 replaced by shader nodes.
-SHADER = "Shader" if IS_BLENDER_5 else "Compositor"
-
 #: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")
 
@@ -53,7 +50,7 @@ class NodeGrid:
 
     def math(self, operation: str, column: float, row: float, value: Socket, *numbers: float) -> Socket:
         """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-        node = self.node(f"{SHADER}NodeMath", column, row=row)
+        node = self.node("ShaderNodeMath" if IS_BLENDER_5 else "CompositorNodeMath", column, row=row)
         node.operation = operation
         self.link(value, node.inputs[0])
         for index, number in enumerate(numbers, 1):

@@ -106,7 +106,7 @@ def _add_nodes(
         codes = grid.divide_by_alpha(codes, 1)
     light = add_curves(grid, codes, curve.inverse, parts, 2)
     if matrix is not None or alpha_mode == "NONE":
-        light = _by_channel(grid, light, matrix, has_alpha=alpha_mode != "NONE")
+        light = by_channel(grid, light, matrix, 3, has_alpha=alpha_mode != "NONE")
     exposed, end = grid.node("CompositorNodeExposure", 8), grid.node("NodeGroupOutput", 11)
     grid.link(light, exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
@@ -116,15 +116,17 @@ def _add_nodes(
     grid.link(grid.convert_color_space(source, working_space(), light, 10), end.inputs["Image"])
 
 
-def _by_channel(grid: NodeGrid, light: Socket, matrix: Float64Array | None, *, has_alpha: bool) -> Socket:
+def by_channel(
+    grid: NodeGrid, light: Socket, matrix: Float64Array | None, column: float, *, has_alpha: bool = True
+) -> Socket:
     """Return the socket of light whose primaries a matrix, shape (3, 3), converts, and whose alpha is 1 on demand."""
-    split, join = grid.node("CompositorNodeSeparateColor", 3), grid.node("CompositorNodeCombineColor", 7)
+    split, join = grid.node("CompositorNodeSeparateColor", column), grid.node("CompositorNodeCombineColor", column + 4)
     grid.link(light, split.inputs[0])
     if has_alpha:
         grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     channels = [split.outputs[channel] for channel in CHANNELS]
     if matrix is not None:
-        channels = grid.multiply_by_matrix(channels, matrix, 4)
+        channels = grid.multiply_by_matrix(channels, matrix, column + 1)
     for channel, socket in zip(CHANNELS, channels, strict=True):
         grid.link(socket, join.inputs[channel])
     return join.outputs[0]

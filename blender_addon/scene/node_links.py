@@ -13,7 +13,7 @@ from .plates import Datablock, datablock_of_node, shown_by_node
 #: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"
 
-#: The same of the node groups "Camera Look" and their images.
+#: The same of the node groups "Camera Look".
 LOOK = "camera_response_look_of"
 
 
@@ -54,6 +54,11 @@ def compositor_trees() -> Iterator[bpy.types.NodeTree]:
     yield from (tree for tree in bpy.data.node_groups if tree.bl_idname == "CompositorNodeTree")
     if bpy.app.version < (5, 0, 0):  # later, these are node groups, too
         yield from (scene.node_tree for scene in bpy.data.scenes if scene.node_tree is not None)
+
+
+def has_groups() -> bool:
+    """Return whether the file has node groups of the add-on."""
+    return any(PLATE in group or LOOK in group for group in bpy.data.node_groups)
 
 
 def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from .. import lazy_import
-from ..scene import code_values
+from ..scene import code_values, node_links
 from ..work.errors import expected_errors
 from .image_editor import comparison
 
@@ -33,10 +33,10 @@ def note_files_as_read(_path: str = "") -> None:
 
 @bpy.app.handlers.persistent
 def rename_color_spaces(_path: str = "") -> None:
-    """Give the data of a file that was made under another config the names of the present one."""
-    if images := code_values.data_of_another_config():
+    """Give the color spaces of a file that may have been made under another config the names of the present one."""
+    if node_links.has_groups():
         try:
-            lazy_import.load(".scene.color_space_names").rename_color_spaces(images)
+            lazy_import.load(".scene.color_space_names").rename_color_spaces()
         except expected_errors() as problem:
             sys.stderr.write(f"Camera response: {problem}\n")
 
