@@ -22,7 +22,7 @@ from .color_management import color_spaces
 from .curve_nodes import STEPS, add_curves
 from .node_building import GAP, WIDTH, NodeGrid, activate
 from .node_group import by_channel, linear_rec709, made_for, new_group, working_space
-from .node_links import LOOK, compositor_trees, holds_group_of
+from .node_links import LOOK, groups_of, holds_group_of
 from .plates import Datablock
 
 #: The output of the group with code values.
@@ -50,16 +50,12 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
     activate(node)
 
 
-def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None:
-    """Bring the plate's look up to date, and every node of it in the file; nothing happens if it has none."""
-    group = made_for(plate, LOOK)
-    if group is None:
-        return
-    _build(plate, "", curve)
-    for tree in compositor_trees():
-        for node in tree.nodes:
-            if getattr(node, "node_tree", None) == group:
-                node.inputs["Exposure"].default_value = exposure
+def update_look(scene: bpy.types.Scene, plate: Datablock, curve: ResponseCurve, exposure: float) -> None:
+    """Bring the plate's look up to date, and its nodes but for those of other scenes; nothing if it has none."""
+    if made_for(plate, LOOK) is not None:
+        _build(plate, "", curve)
+    for node in groups_of(plate, scene, LOOK):
+        node.inputs["Exposure"].default_value = exposure
 
 
 def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeTree:
