@@ -10,8 +10,8 @@ from __future__ import annotations
 import bpy
 import PyOpenColorIO as OCIO
 
-from crfnet.configs.files import role_name
 from crfnet.configs.reference_space import LINEAR_REC709
+from crfnet.configs.sources import role_name
 from crfnet.errors import ConfigError
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
