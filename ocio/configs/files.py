@@ -79,14 +79,6 @@ def _is_bounded(text: str, values: Mapping[str, str]) -> bool:
     return True
 
 
-def role_name(path: str | Path, role: str) -> str:
-    """Return the name of the color space that has a role in a config file; raise a ConfigError if none has."""
-    space = load_config(path).getColorSpace(role)
-    if space is None:
-        raise ConfigError("role_absent", path=path, role=role)
-    return str(space.getName())
-
-
 def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, Lut1D], overwrite: bool = False) -> None:
     """Write a config; the file gets its name only after OpenColorIO has loaded it and converts as its LUTs do.
 

@@ -55,6 +55,15 @@ def find_config(name: str) -> ConfigSource:
     return ConfigSource(load_config(path), str(path), path)
 
 
+def role_name(config: str, role: str) -> str:
+    """Return the name of the color space that has a role in a config of `find_config`; a ConfigError if none has."""
+    source = find_config(config)
+    space = source.config.getColorSpace(role)
+    if space is None:
+        raise ConfigError("role_absent", path=source.name, role=role)
+    return str(space.getName())
+
+
 def built_in_names() -> tuple[str, ...]:
     """Return the names of OpenColorIO's built-in configs, the short ones first, each with "ocio://"."""
     configs = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
