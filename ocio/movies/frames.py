@@ -21,7 +21,7 @@ from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
 from .library import ffmpeg_line, opened
-from .stream import MovieStream, Picture, decoded_packet, read_stream, video_packets
+from .stream import AVI, MovieStream, Picture, decoded_packet, is_shown, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -94,7 +94,7 @@ def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, V
     if not pending:
         return
     with opened(movie.path) as (container, stream):
-        for number, frame in enumerate(_in_order(container, stream), 1):
+        for number, frame in enumerate(_in_order(movie, container, stream), 1):
             if number == pending[-1]:
                 yield pending.pop(), frame
             if not pending:
@@ -102,39 +102,45 @@ def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, V
     yield from ((number, None) for number in reversed(pending))
 
 
-def _in_order(container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
-    """Yield all frames as shown; None for each that is damaged or may be predicted from a damaged one.
+def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
+    """Yield all frames as shown; None for each that is lost, damaged, or may be predicted from a damaged one.
 
-    A packet that cannot be decoded has its place by its time. What follows it in the file up to the next key frame is
+    The packets' times say which frames are lost. All that follow damage in the file, up to the next key frame, are
     taken for damaged, as decoders predict from what they have.
     """
-    damaged: list[int] = []
-    order: dict[int | None, int] = {}
-    lost = inf  # the place in the file of the first damage since the last key frame
-    for index, packet in enumerate(container.demux(stream)):
-        frames, order[packet.pts] = decoded_packet(packet), index
-        if frames is None:
-            lost = min(lost, index)
-            if packet.pts is not None and not packet.is_discard:
-                insort(damaged, packet.pts)
-        for frame in frames or ():
-            while damaged and frame.pts is not None and damaged[0] < frame.pts:
-                damaged.pop(0)
-                yield None
-            place = order.pop(frame.pts, index)
+    pending: list[tuple[int, int, int]] = []  # the frames to come, in the order shown: clock, time, place in the file
+    clock, last = 0, None  # and the time in the file; whenever it runs back, another one begins
+    damaged_from = inf  # the place of the first damage since the last key frame
+    for place, packet in enumerate(container.demux(stream)):
+        if packet.dts is not None:
+            clock, last = clock + (last is not None and packet.dts < last), packet.dts
+        time = None if container.format.name == AVI else packet.pts
+        if time is not None and is_shown(packet) and (clock or time >= movie.start):
+            insort(pending, (clock, time, place))
+        frames, is_damaged = decoded_packet(stream, packet)
+        if is_damaged:
+            damaged_from = min(damaged_from, place)
+        if is_damaged and not frames and time is None:
+            yield None
+        for frame in frames:
+            times = [time for _, time, _ in pending]
+            index = times.index(frame.pts) if frame.pts in times else -1
+            origin = pending[index][2] if index >= 0 else place
+            yield from [None] * index
+            del pending[: index + 1]
             if frame.is_corrupt:
-                lost = min(lost, place)
-            elif frame.key_frame and place > lost:
-                lost = inf
-            yield None if frame.is_corrupt or place > lost else frame
-    yield from (None for _ in damaged)
+                damaged_from = min(damaged_from, origin)
+            elif frame.key_frame and origin > damaged_from:
+                damaged_from = inf
+            yield None if origin >= damaged_from else frame
+    yield from [None] * len(pending)
 
 
 def _decoded_keys(movie: MovieStream, numbers: set[int]) -> Iterator[tuple[int, VideoFrame | None]]:
     """Yield key frames, ascending by number, each decoded alone; None for one that is damaged."""
     with opened(movie.path) as (container, stream):
         stream.codec_context.skip_frame = "NONKEY"
-        keys = (packet for packet in video_packets(container, stream) if packet.is_keyframe)
+        keys = (packet for packet in container.demux(stream) if is_shown(packet) and packet.is_keyframe)
         for number, packet in zip(movie.key_numbers, keys, strict=False):
             if number in numbers:
                 yield number, _decoded_alone(stream, packet)
@@ -142,14 +148,11 @@ def _decoded_keys(movie: MovieStream, numbers: set[int]) -> Iterator[tuple[int, 
 
 def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
     """Return the frame of a packet; None if it is damaged."""
-    import av
-
-    try:
-        frames = [*packet.decode(), *stream.decode(None)]  # without a next packet the decoder hands it out
-    except av.FFmpegError:
-        frames = []
+    results = [decoded_packet(stream, each) for each in (packet, None)]  # without a next one the decoder hands it out
     stream.codec_context.flush_buffers()
-    return frames[0] if frames and not frames[0].is_corrupt else None
+    frames = [frame for shown, _ in results for frame in shown]
+    is_damaged = any(damaged for _, damaged in results) or any(frame.is_corrupt for frame in frames)
+    return frames[0] if frames and not is_damaged else None
 
 
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:

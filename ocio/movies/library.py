@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,6 +59,16 @@ def is_movie(path: Path) -> bool:
     )
 
 
+def has_cut_riff(path: Path) -> bool:
+    """Return whether a file ends before one of its RIFF chunks, of which an AVI file has one or more, does."""
+    end, size = 0, path.stat().st_size
+    with path.open("rb") as file:
+        while (head := file.read(8)).startswith(b"RIFF"):
+            end += 8 + int.from_bytes(head[4:], "little")
+            file.seek(end)
+    return end > size
+
+
 def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
     pattern = path.with_name(path.stem.replace("%", "_") + ".%04d.png")
@@ -76,15 +88,28 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
         import av
     except ImportError:
         raise PlateError("pyav_missing", path=path, line=ffmpeg_line(path)) from None
+    _capture_errors()
     try:
         with av.open(f"file:{path}", metadata_errors="replace", timeout=(OPENING, None)) as container:
             stream = container.streams.best("video")
             if not isinstance(stream, av.VideoStream) or stream.codec_context is None:
                 raise PlateError("no_video", path=path)
-            stream.thread_type = "SLICE"  # threads by frame would report an error at another frame
+            stream.codec_context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
+            if stream.codec_context.codec.canonical_name == "hevc":  # else it passes over errors within a frame
+                stream.codec_context.options = {"err_detect": "crccheck+explode"}
             yield container, stream
     except (av.FFmpegError, UnicodeDecodeError) as problem:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
+
+
+@cache
+def _capture_errors() -> None:
+    """Let `av.logging.Capture` get FFmpeg's errors; others go to Python's logging, and by default nowhere."""
+    import av.logging
+
+    logging.getLogger("libav").addHandler(logging.NullHandler())
+    av.logging.set_level(av.logging.ERROR)
+    av.logging.set_skip_repeated(False)
 
 
 def dolby_vision_profile(stream: VideoStream) -> int:

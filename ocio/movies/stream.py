@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -19,7 +20,7 @@ from crfnet_core.photograph.orientation import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
-from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, opened, undecodable
+from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, has_cut_riff, opened, undecodable
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -35,6 +36,12 @@ UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 
 #: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full.
 JPEG_CODECS = ("mjpeg", "mjpegb")
+
+#: Words of the messages of FFmpeg's decoders about damage that they fill in, and of its demuxers about files cut short.
+DAMAGE, CUT = ("CRC mismatch", "damaged", "error while decoding"), ("partial file", "ended prematurely")
+
+#: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
+MATROSKA, AVI = "matroska,webm", "avi"
 
 #: Codecs as people know them; others by FFmpeg's name.
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
@@ -94,9 +101,11 @@ class MovieStream:
     rate: Fraction  # frames per second on average; 0 if unknown
     color: ColorTags
     metadata: Mapping[str, str]  # of the file and of its video, by FFmpeg's names in lower case
-    frame_count: int
+    frame_count: int  # of a file that is cut short one more, which cannot be decoded
     key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
     container: ColorCodes  # of the container, which count where the frames do not state theirs
+    start: float  # the time of the first frame, in the time base of its stream; -inf if unknown
+    is_cut: bool = False
 
     def __str__(self) -> str:
         """Return one line for people: the movie, and the values taken for properties that it does not state."""
@@ -109,6 +118,7 @@ class MovieStream:
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
             interlaced if self.picture.is_interlaced else "",
+            "the file is cut short: copy it again" if self.is_cut else "",
             "its alpha is left out" if self.metadata.get("alpha_mode") == "1" else "",  # of VP8 and VP9, not decoded
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
@@ -156,25 +166,35 @@ def read_stream(path: Path) -> MovieStream:
         if dolby_vision_profile(stream) == IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         codes = _color_codes(context)  # decoding overwrites them
-        packets, frame = _survey(container, stream)
+        packets, frame, problems = _survey(container, stream)
+        is_cut = any(words in problem for words in CUT for problem in problems) or has_cut_riff(path)
+        if problems and not is_cut and container.format.name == MATROSKA:  # it passes over frames that it cannot find
+            raise undecodable(path, problems[0])
         if frame is None:
             raise undecodable(path, "it holds no frame")
-        return _described(path, container, stream, _shown(packets, frame), frame, codes)
+        movie = _described(path, container, stream, packets, frame, codes)
+        return replace(movie, frame_count=movie.frame_count + is_cut, is_cut=is_cut)
 
 
-def video_packets(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
-    """Yield the packets of a stream that belong to shown frames, in the order of the file."""
-    return (packet for packet in container.demux(stream) if packet.size and not packet.is_discard)
+def is_shown(packet: Any) -> bool:
+    """Return whether a packet holds a frame that is shown."""
+    return bool(packet.size) and not packet.is_discard
 
 
-def decoded_packet(packet: Any) -> list[Any] | None:
-    """Return the frames that a packet completes; None if it is damaged, as FFmpeg passes it over."""
+def decoded_packet(stream: VideoStream, packet: Any) -> tuple[list[VideoFrame], bool]:
+    """Return the frames that a packet completes, None for the last ones, and whether it is damaged.
+
+    Containers mark parts that are cut or lost; decoders raise, or log damage and fill it in from other frames.
+    """
     import av
 
-    try:
-        return list(packet.decode())
-    except av.FFmpegError:
-        return None
+    with av.logging.Capture() as messages:
+        try:
+            frames = list(stream.decode(packet))
+        except av.FFmpegError:
+            return [], True
+    is_named = any(words in message for words in DAMAGE for _, _, message in messages)
+    return frames, is_named or bool(packet and packet.is_corrupt)
 
 
 def stated_codes(frame: VideoFrame, container: ColorCodes) -> ColorCodes:
@@ -188,22 +208,31 @@ def _color_codes(source: Any) -> ColorCodes:
     return int(source.colorspace), int(source.color_range), int(source.color_primaries), int(source.color_trc)
 
 
-def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None]:
-    """Return the time of each frame and whether it is a key frame, in the order of the file, and the first frame."""
+def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None, list[str]]:
+    """Return the entries of all frames in the order of the file, the first frame, and the errors of the container."""
+    import av
+
     packets, first = [], None
-    for packet in container.demux(stream):
-        if first is None:
-            first = next(iter(decoded_packet(packet) or ()), None)
-        if packet.size and not packet.is_discard:
-            packets.append((packet.pts, packet.is_keyframe))
-    return packets, first
+    with av.logging.Capture() as messages:
+        for packet in container.demux(stream):
+            if first is None:
+                first = next(iter(decoded_packet(stream, packet)[0]), None)
+            if is_shown(packet):
+                packets.append((packet.pts, packet.is_keyframe))
+    return packets, first, [one_line(message) for _, name, message in messages if name == container.format.name]
 
 
-def _shown(packets: Sequence[Entry], first: VideoFrame) -> list[Entry]:
+def _start(packets: Sequence[Entry], first: VideoFrame) -> float:
+    """Return the time of the first frame: pictures that refer to others before the first key frame have none."""
+    key = next((time for time, is_key in packets if is_key), None)
+    return min((time for time in (key, first.pts) if time is not None), default=-inf)
+
+
+def _shown(packets: Sequence[Entry], start: float) -> list[Entry]:
     """Return the entries without frames at the start that refer to pictures before the first key frame."""
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     end = keys[1] if len(keys) > 1 else len(packets)
-    return [entry for entry in packets[:end] if not _is_before(entry[0], first.pts)] + list(packets[end:])
+    return [entry for entry in packets[:end] if entry[0] is None or entry[0] >= start] + list(packets[end:])
 
 
 def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
@@ -230,6 +259,8 @@ def _described(
 ) -> MovieStream:
     """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
+    start = _start(packets, frame)
+    packets = _shown(packets, start)
     parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
     metadata = {key.lower(): value for part in parts for key, value in part.items()}
     picture = Picture.from_frame(path, frame, codec, codes)
@@ -246,6 +277,7 @@ def _described(
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
         container=codes,
+        start=start,
     )
 
 
