@@ -26,6 +26,7 @@ from crfnet_core.photograph.image_io.header_checks import (
     with_plain_texts,
 )
 from crfnet_core.photograph.image_io.heif import read_heif
+from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
@@ -38,8 +39,11 @@ _ROWS = 256
 #: Pages of a TIFF file that are searched for the largest.
 _MOST_PAGES = 64
 
-#: Formats whose alpha is straight, and of which OpenImageIO does not say so.
-STRAIGHT_KINDS = ("JPEG 2000", "JPEG XL")
+#: Formats whose second or fourth channel is alpha, and of which OpenImageIO does not say whether it is associated.
+LAST_ALPHA_KINDS = ("JPEG 2000", "JPEG XL")
+
+#: By how much colors of straight alpha are above it in some pixels, as a part of white, and the least part of these.
+ABOVE_ALPHA, LEAST_ABOVE = 0.05, 0.002
 
 #: The formats that OpenImageIO's wheel does not read.
 HEIF_KINDS = ("HEIC", "AVIF")
@@ -51,8 +55,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX and BMP. The values are divided by
     the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
     Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
-    or layers the first is read, of a TIFF file the first of the largest; of an HDR photograph with a gain map (Ultra
-    HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
+    or layers the first is read, of a TIFF file the first of the largest, of JPEG XL the last; of an HDR photograph with
+    a gain map (Ultra HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
 
     Parameters
     ----------
@@ -135,6 +139,8 @@ class _OpenFile:
         if bit_depth in (10, 12):
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
         values = upright(values, self.turn)
+        if self.kind == "JPEG XL" and self.header.alpha_channel > 0:
+            _check_straight(self.path, values)
         return CodeValues.from_samples(values, bit_depth, self._upright_header(), self.metadata())
 
     def _upright_header(self) -> Any:
@@ -195,8 +201,8 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
-        if kind in STRAIGHT_KINDS:
-            header.attribute("oiio:UnassociatedAlpha", 1)
+        if kind in LAST_ALPHA_KINDS:
+            header.attribute("oiio:UnassociatedAlpha", int(kind == "JPEG XL" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
             check_dpx_lines(path, header)
@@ -247,6 +253,15 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
             return None
         values[top:bottom] = rows
     return values
+
+
+def _check_straight(path: Path, samples: NDArray[Any]) -> None:
+    """Refuse JPEG XL whose colors may be multiplied by alpha, as in none is the color above it: no reader says so."""
+    white = np.iinfo(samples.dtype).max
+    samples = samples[samples[..., -1] < (1 - ABOVE_ALPHA) * white]
+    is_above = samples[..., :-1].max(axis=-1, initial=0) > samples[..., -1] + ABOVE_ALPHA * white
+    if np.count_nonzero(is_above) <= LEAST_ABOVE * len(samples) and samples.size:
+        raise PhotoError("coding_not_read", path=path, kind="JPEG XL", problem="its colors may be multiplied by alpha")
 
 
 def _content(source: Any, path: Path) -> Any:
