@@ -14,6 +14,7 @@ from typing import Any
 
 import OpenImageIO as oiio
 
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import with_segments
 
 #: The color type of IHDR whose pixels are the numbers of colors in a table.
@@ -39,7 +40,8 @@ def with_color_chunks(header: Any, path: Path) -> Any:
     """Return the header of a PNG file with EXIF, wherever it stands, and the attributes of color.
 
     They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma";
-    the last two only where no other chunk describes the encoding. Texts of these names are overridden.
+    the last two only where no other chunk describes the encoding. Texts of these names are overridden. Raise PhotoError
+    if cICP says that black is not code 0.
     """
     chunks, complete = _chunks(path), oiio.ImageSpec(header)
     complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
@@ -47,6 +49,8 @@ def with_color_chunks(header: Any, path: Path) -> Any:
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]
     complete.attribute("png:palette", int(color_type == _PALETTE))
     complete.attribute("oiio:BitsPerSample", bits)  # OpenImageIO widens fewer to 8
+    if chunks.get(b"cICP", b"\1")[-1] == 0:
+        raise PhotoError("coding_not_read", path=path, kind="PNG", problem="limited range")
     if b"cICP" in chunks:
         complete.attribute("CICP", oiio.TypeDesc("int[4]"), tuple(chunks[b"cICP"]))
     if b"sRGB" in chunks:

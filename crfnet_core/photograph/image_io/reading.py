@@ -39,8 +39,12 @@ _ROWS = 256
 #: Pages of a TIFF file that are searched for the largest.
 _MOST_PAGES = 64
 
-#: Formats whose second or fourth channel is alpha, and of which OpenImageIO does not say whether it is associated.
+#: Formats whose second or fourth channel is alpha, of which OpenImageIO does not say so.
 LAST_ALPHA_KINDS = ("JPEG 2000", "JPEG XL")
+
+#: Formats whose pixels alone show whether alpha is associated. DPX does not state it, and OpenImageIO drops the bit of
+#: JPEG XL, whose alpha is nearly always straight.
+UNSTATED_ALPHA_KINDS = ("DPX", "JPEG XL")
 
 #: By how much colors of straight alpha are above it in some pixels, as a part of white, and the least part of these.
 ABOVE_ALPHA, LEAST_ABOVE = 0.05, 0.002
@@ -134,14 +138,19 @@ class _OpenFile:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
         bit_depth = checked_bit_depth(self.path, self.header, self.kind)
         values = self._decoded()
-        if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO and bit_depth > 8:
-            values = ~values  # OpenImageIO inverts such samples of 8 bits only
+        if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO:
+            wrong = np.s_[..., :1] if bit_depth > 8 else np.s_[..., 1:]  # OpenImageIO inverts all samples of 8 bits
+            values[wrong] = ~values[wrong]
         if bit_depth in (10, 12):
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
-        values = upright(values, self.turn)
-        if self.kind == "JPEG XL" and self.header.alpha_channel > 0:
-            _check_straight(self.path, values)
-        return CodeValues.from_samples(values, bit_depth, self._upright_header(), self.metadata())
+        header = self._upright_header()
+        if self.kind in UNSTATED_ALPHA_KINDS and header.alpha_channel > 0:
+            is_straight = _is_straight(values)
+            if not is_straight and self.kind == "JPEG XL":
+                problem = "its colors may be multiplied by alpha"
+                raise PhotoError("coding_not_read", path=self.path, kind=self.kind, problem=problem)
+            header.attribute("oiio:UnassociatedAlpha", int(is_straight))
+        return CodeValues.from_samples(upright(values, self.turn), bit_depth, header, self.metadata())
 
     def _upright_header(self) -> Any:
         """Return the header of the upright picture: sides and windows are exchanged where rows become columns."""
@@ -155,7 +164,7 @@ class _OpenFile:
         return header
 
     def _decoded(self) -> NDArray[Any]:
-        """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
+        """Return the samples as stored, shape (H, W, C); refuse damage among them."""
         if self.kind == "BMP":
             return np.atleast_3d(np.asarray(self.source))
         values = _samples(self.source, self.header)
@@ -202,7 +211,7 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
         if kind in LAST_ALPHA_KINDS:
-            header.attribute("oiio:UnassociatedAlpha", int(kind == "JPEG XL" or not is_premultiplied(path)))
+            header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
             check_dpx_lines(path, header)
@@ -240,8 +249,11 @@ def _bmp_header(path: Path, image: BmpImageFile) -> Any:
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples in an open file, shape (H, W, 1 to 4), or None; of whole pictures OpenImageIO makes a copy."""
-    channels = min(header.nchannels, 4)
+    """Return the samples in an open file up to alpha, shape (H, W, C), or None.
+
+    Of whole pictures OpenImageIO makes a copy.
+    """
+    channels = min(header.nchannels, max(4, header.alpha_channel + 1))
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)
         return picture
@@ -255,13 +267,12 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     return values
 
 
-def _check_straight(path: Path, samples: NDArray[Any]) -> None:
-    """Refuse JPEG XL whose colors may be multiplied by alpha, as in none is the color above it: no reader says so."""
+def _is_straight(samples: NDArray[Any]) -> bool:
+    """Return whether colors are not multiplied by alpha, as some are above it, or all of it is opaque."""
     white = np.iinfo(samples.dtype).max
     samples = samples[samples[..., -1] < (1 - ABOVE_ALPHA) * white]
     is_above = samples[..., :-1].max(axis=-1, initial=0) > samples[..., -1] + ABOVE_ALPHA * white
-    if np.count_nonzero(is_above) <= LEAST_ABOVE * len(samples) and samples.size:
-        raise PhotoError("coding_not_read", path=path, kind="JPEG XL", problem="its colors may be multiplied by alpha")
+    return bool(not samples.size or np.count_nonzero(is_above) > LEAST_ABOVE * len(samples))
 
 
 def _content(source: Any, path: Path) -> Any:

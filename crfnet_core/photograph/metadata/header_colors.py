@@ -23,6 +23,9 @@ _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec20
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
 SAME_CHROMATICITIES = 2e-4
 
+#: Largest difference of a gamma from 1 that counts as linear.
+LINEAR_GAMMA = 0.04
+
 #: Least area of the triangle of primaries in x and y, doubled; Rec.709 has 0.22.
 LEAST_AREA = 0.01
 
@@ -54,10 +57,12 @@ def header_attribute(header: Any, name: str) -> Any:
 
 def _png_tags(header: Any) -> tuple[ColorTags, ...]:
     """Return the tags of PNG's other chunks: a gamma of 1 is linear."""
-    is_srgb, is_linear = header_attribute(header, "png:sRGB") is not None, header_attribute(header, "png:gamma") == 1
+    gamma = header_attribute(header, "png:gamma")
+    is_linear = isinstance(gamma, float) and abs(gamma - 1) < LINEAR_GAMMA
+    is_srgb = header_attribute(header, "png:sRGB") is not None
     srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
-    gamma = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
-    return srgb, _chromaticity_tags(header, "cHRM chunk"), gamma
+    linear = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
+    return srgb, _chromaticity_tags(header, "cHRM chunk"), linear
 
 
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:
