@@ -173,6 +173,14 @@ class TestFiles:
         path = write_tagged(tmp_path / name, GRAY, matrix_profile(DISPLAY_P3))
         assert self.tags(path) == ColorTags(DISPLAY_P3, "", "ICC profile")
 
+    def test_the_profile_of_a_bmp_is_read(self, tmp_path):
+        icc = matrix_profile(DISPLAY_P3)
+        header = struct.pack("<IiiHHIIiiII", 124, 2, 2, 1, 24, 0, 16, 0, 0, 0, 0).ljust(56, b"\0") + b"DEBM"
+        header = header.ljust(112, b"\0") + struct.pack("<III", 140, len(icc), 0)
+        start = struct.pack("<2sIHHI", b"BM", 154 + len(icc), 0, 0, 138)
+        (tmp_path / "a.bmp").write_bytes(start + header + bytes(16) + icc)
+        assert self.tags(tmp_path / "a.bmp") == ColorTags(DISPLAY_P3, "", "ICC profile")
+
     def test_a_profile_of_tables_is_unknown_whatever_exif_says(self, tmp_path):
         icc = profile({"A2B0": b"mft2".ljust(52, b"\0")})
         assert self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc, Exif__ColorSpace=1)) == ColorTags(source=TABLES)

@@ -24,6 +24,7 @@ from crfnet_core.photograph.image_io.header_checks import (
     check_dpx_lines,
     checked_bit_depth,
     with_plain_texts,
+    with_segments,
 )
 from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
@@ -32,6 +33,9 @@ from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
 from crfnet_core.photograph.photo import CodeValues, Photo
+
+#: Where a BMP file of version 5 has the place and size of its profile, and the type of color space of an embedded one.
+_BMP_PROFILE_AT, _BMP_EMBEDDED = 126, b"DEBM"
 
 #: Rows read at a time.
 _ROWS = 256
@@ -245,7 +249,12 @@ def _bmp_header(path: Path, image: BmpImageFile) -> Any:
     header.attribute("oiio:UnassociatedAlpha", 1)
     if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
         header.attribute("oiio:BitsPerSample", 5)
-    return header
+    with path.open("rb") as file:
+        head = file.read(_BMP_PROFILE_AT + 8)
+        offset, size = (int.from_bytes(head[at : at + 4], "little") for at in (_BMP_PROFILE_AT, _BMP_PROFILE_AT + 4))
+        file.seek(14 + offset)
+        profile = file.read(min(size, 1 << 24)) if head[70:74] == _BMP_EMBEDDED else b""
+    return with_segments(header, {"icc_profile": profile})
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
