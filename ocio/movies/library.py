@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import shlex
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -43,13 +43,11 @@ OPENING = 60
 
 def is_movie(path: Path) -> bool:
     """Return whether a file is a movie, by its first bytes; False for a pipe and for unreadable files."""
-    try:
-        if not path.is_file():
-            return False
-        with path.open("rb") as file:
-            head = file.read(600)
-    except (OSError, ValueError):
-        return False
+    head = b""
+    with suppress(OSError, ValueError):
+        if path.is_file():
+            with path.open("rb") as file:
+                head = file.read(600)
     if head[4:8] in QUICKTIME_BOXES:
         return not (head[4:8] == b"ftyp" and head[8:12] in STILL_BRANDS)
     if head.startswith(b"RIFF"):
@@ -71,18 +69,16 @@ def has_cut_riff(path: Path) -> bool:
 
 def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
-    pattern = path.with_name(path.stem.replace("%", "_") + ".%04d.png")
-    filtered = ["-vf", filters] if filters else []
-    command = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
-    return shlex.join(command)
+    pattern, filtered = path.with_name(path.stem.replace("%", "_") + ".%04d.png"), ["-vf", filters] if filters else []
+    line = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
+    return shlex.join(line)
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
     """Yield a movie, opened, and the video stream that FFmpeg ranks best: not a cover or a thumbnail.
 
-    Raise a PlateError if PyAV is absent, the file is not a movie or holds no video, or something in the block cannot be
-    decoded.
+    Raise a PlateError if PyAV or a video is absent, or something in the block cannot be decoded.
     """
     try:
         import av

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from math import inf
+from math import inf, isnan, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from av.container import InputContainer
     from av.video.stream import VideoStream
 
-#: The time of a frame, in the time base of its stream, and whether it is a key frame.
-Entry: TypeAlias = tuple[int | None, bool]
+#: The time of a frame in the time base of its stream, nan if unknown, and whether it is a key frame.
+Entry: TypeAlias = tuple[float, bool]
 
 #: Matrix, range, primaries and transfer: code points of ITU-T H.273, but the range is FFmpeg's; and of none.
 ColorCodes: TypeAlias = tuple[int, ...]
@@ -128,15 +128,7 @@ class MovieStream:
         """The metadata as a photograph's file has it."""
         width, height = self.picture.size
         make, model, software = map(self._text, (MAKES, MODELS, FIRMWARE))
-        return FileMetadata(
-            width=width,
-            height=height,
-            make=make,
-            model=model,
-            software=software,
-            file_format="movie",
-            color=self.color,
-        )
+        return FileMetadata(width, height, make, model, software, file_format="movie", color=self.color)
 
     def _text(self, names: tuple[str, ...]) -> str:
         """Return the first metadata present, on one line of printable characters."""
@@ -144,10 +136,7 @@ class MovieStream:
 
 
 def check_progressive(movie: MovieStream) -> None:
-    """Raise a PlateError, with the line by which FFmpeg deinterlaces, if the frames of a movie hold two fields.
-
-    How they become one picture is the user's to choose.
-    """
+    """Raise a PlateError if frames hold two fields: how they become one picture is the user's to choose."""
     if movie.picture.is_interlaced:
         line = ffmpeg_line(movie.path, filters="bwdif=send_frame")
         raise PlateError("movie_interlaced", path=movie.path, line=line)
@@ -156,8 +145,7 @@ def check_progressive(movie: MovieStream) -> None:
 def read_stream(path: Path) -> MovieStream:
     """Return the description of a movie; reads it to its end, but decodes the first frame only.
 
-    Raise a PlateError if PyAV is absent, or the movie is damaged, too large, or codes its pictures in a way that is not
-    read.
+    Raise a PlateError if PyAV is absent, or the movie is damaged, too large, or of a coding that is not read.
     """
     with opened(path) as (container, stream):
         context = stream.codec_context
@@ -218,35 +206,23 @@ def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry]
             if first is None:
                 first = next(iter(decoded_packet(stream, packet)[0]), None)
             if is_shown(packet):
-                packets.append((packet.pts, packet.is_keyframe))
+                packets.append((nan if packet.pts is None else packet.pts, packet.is_keyframe))
     return packets, first, [one_line(message) for _, name, message in messages if name == container.format.name]
 
 
 def _start(packets: Sequence[Entry], first: VideoFrame) -> float:
     """Return the time of the first frame: pictures that refer to others before the first key frame have none."""
-    key = next((time for time, is_key in packets if is_key), None)
-    return min((time for time in (key, first.pts) if time is not None), default=-inf)
-
-
-def _shown(packets: Sequence[Entry], start: float) -> list[Entry]:
-    """Return the entries without frames at the start that refer to pictures before the first key frame."""
-    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
-    end = keys[1] if len(keys) > 1 else len(packets)
-    return [entry for entry in packets[:end] if entry[0] is None or entry[0] >= start] + list(packets[end:])
+    times = [next((time for time, is_key in packets if is_key), nan), nan if first.pts is None else first.pts]
+    return min((time for time in times if not isnan(time)), default=-inf)
 
 
 def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
     """Return the numbers of the key frames: their places in the file, behind the frames shown before them."""
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     return tuple(
-        start + 1 + sum(_is_before(time, packets[start][0]) for time, _ in packets[start:end])
+        start + 1 + sum(time < packets[start][0] for time, _ in packets[start:end])
         for start, end in pairwise([*keys, len(packets)])
     )
-
-
-def _is_before(time: int | None, other: int | None) -> bool:
-    """Return whether both times are known and the first is earlier."""
-    return time is not None and other is not None and time < other
 
 
 def _described(
@@ -260,7 +236,9 @@ def _described(
     """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
     start = _start(packets, frame)
-    packets = _shown(packets, start)
+    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
+    end = keys[1] if len(keys) > 1 else len(packets)  # from there on, the clock may run back
+    packets = [entry for entry in packets[:end] if not entry[0] < start] + packets[end:]
     parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
     metadata = {key.lower(): value for part in parts for key, value in part.items()}
     picture = Picture.from_frame(path, frame, codec, codes)
@@ -292,13 +270,10 @@ def _color_tags(codes: ColorCodes, metadata: Mapping[str, str]) -> ColorTags:
 
 
 def _turn(path: Path, frame: VideoFrame) -> Turn:
-    """Return the turn of the display matrix; as stored for other angles than quarter turns.
-
-    PyAV reads no side data of a frame that has any of a kind it does not know, such as EXIF, but gives the angle.
-    """
+    """Return the turn of the display matrix; as stored for other angles than quarter turns."""
     try:
         matrix: Any = frame.side_data.get("DISPLAYMATRIX")
-    except ValueError:
+    except ValueError:  # of side data that PyAV does not know, such as EXIF; it still gives the angle
         if frame.rotation:
             raise undecodable(path, "its frames are turned, and PyAV does not say whether mirrored, too") from None
         matrix = None

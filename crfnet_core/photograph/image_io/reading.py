@@ -13,7 +13,6 @@ from typing import Any, BinaryIO
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
@@ -24,18 +23,14 @@ from crfnet_core.photograph.image_io.header_checks import (
     check_dpx_lines,
     checked_bit_depth,
     with_plain_texts,
-    with_segments,
 )
-from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
+from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
 from crfnet_core.photograph.photo import CodeValues, Photo
-
-#: Where a BMP file of version 5 has the place and size of its profile, and the type of color space of an embedded one.
-_BMP_PROFILE_AT, _BMP_EMBEDDED = 126, b"DEBM"
 
 #: Rows read at a time.
 _ROWS = 256
@@ -53,8 +48,8 @@ UNSTATED_ALPHA_KINDS = ("DPX", "JPEG XL")
 #: By how much colors of straight alpha are above it in some pixels, as a part of white, and the least part of these.
 ABOVE_ALPHA, LEAST_ABOVE = 0.05, 0.002
 
-#: The formats that OpenImageIO's wheel does not read.
-HEIF_KINDS = ("HEIC", "AVIF")
+#: The formats that OpenImageIO's wheel does not read, or not all of.
+PILLOW_KINDS = ("HEIC", "AVIF", "BMP")
 
 
 def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
@@ -94,22 +89,22 @@ def read_codes(path: str | os.PathLike[str]) -> CodeValues:
     path = Path(path)
     with _named_errors(path):
         kind = file_kind(path)
-        if kind in HEIF_KINDS:
-            return read_heif(path, kind)
+        if kind in PILLOW_KINDS:
+            return read_pillow_file(path, kind)
         with _opened(path, kind) as file:
             return file.codes()
 
 
 def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
-    """Return the metadata of a file; only of HEIC and AVIF the pixels are decoded.
+    """Return the metadata of a file; only of HEIC, AVIF and BMP the pixels are decoded.
 
     Raises as `read_photo` does, but does not see damage among the pixels.
     """
     path = Path(path)
     with _named_errors(path):
         kind = file_kind(path)
-        if kind in HEIF_KINDS:
-            return read_heif(path, kind).metadata
+        if kind in PILLOW_KINDS:
+            return read_pillow_file(path, kind).metadata
         with _opened(path, kind) as file:
             checked_bit_depth(path, file.header, kind)
             return file.metadata()
@@ -117,7 +112,7 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
 
 @dataclass(frozen=True)
 class _OpenFile:
-    """A file that OpenImageIO has opened, at the picture that is read; BMP by Pillow."""
+    """A file that OpenImageIO has opened, at the picture that is read."""
 
     path: Path
     kind: str
@@ -169,8 +164,6 @@ class _OpenFile:
 
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, C); refuse damage among them."""
-        if self.kind == "BMP":
-            return np.atleast_3d(np.asarray(self.source))
         values = _samples(self.source, self.header)
         problem = problems.oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
@@ -194,13 +187,6 @@ def _named_errors(path: Path) -> Iterator[None]:
 @contextmanager
 def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
-    if kind == "BMP":  # of which OpenImageIO ignores the masks of channels, and refuses sound runs (RLE)
-        try:
-            with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
-                yield _OpenFile(path, kind, image, _bmp_header(path, image), None)
-        except (OSError, SyntaxError, ValueError) as failure:
-            raise problems.damaged(path, kind, str(failure)) from None
-        return
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
@@ -239,22 +225,6 @@ def _seek_picture(source: Any) -> None:
         sizes.append(header.image_pixels() * (header.get_int_attribute("tiff:PhotometricInterpretation") != MASK))
     source.seek_subimage(sizes.index(max(sizes)) if sizes else 0, 0)
     problems.oiio_message(source)
-
-
-def _bmp_header(path: Path, image: BmpImageFile) -> Any:
-    """Return the header of a BMP file, whose alpha is straight; refuse a palette other than of all grays."""
-    if image.mode in ("1", "P"):
-        raise PhotoError("palette", path=path, kind="a BMP file with a palette")
-    header = oiio.ImageSpec(*image.size, len(image.getbands()), oiio.UINT8)
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
-        header.attribute("oiio:BitsPerSample", 5)
-    with path.open("rb") as file:
-        head = file.read(_BMP_PROFILE_AT + 8)
-        offset, size = (int.from_bytes(head[at : at + 4], "little") for at in (_BMP_PROFILE_AT, _BMP_PROFILE_AT + 4))
-        file.seek(14 + offset)
-        profile = file.read(min(size, 1 << 24)) if head[70:74] == _BMP_EMBEDDED else b""
-    return with_segments(header, {"icc_profile": profile})
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:

@@ -159,7 +159,7 @@ def test_a_film_without_pictures_is_refused(heif, monkeypatch):
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
     monkeypatch.setattr("crfnet_core.photograph.image_io.header_checks.MAX_PIXELS", 64 * 48 - 1)
-    monkeypatch.setattr("crfnet_core.photograph.image_io.heif._heic", None)
+    monkeypatch.setattr("crfnet_core.photograph.image_io.pillow_files._heic", None)
     with pytest.raises(PhotoError) as caught:
         read_photo(heif / "rgb8.heic")
     assert caught.value.code == "too_many_pixels"
