@@ -28,7 +28,7 @@ from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
-#: Errors of the decoders for damaged files.
+#: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
 #: Bytes at the start of a file in which the boxes `ftyp` and `meta` are looked for (ISO/IEC 14496-12).
@@ -123,13 +123,10 @@ def _heic(main: Any) -> _Picture:
 def _avif(path: Path, main: Any) -> _Picture:
     """Return the picture of an AVIF file as stored; Pillow puts its boxes `irot` and `imir` into EXIF.
 
-    Of `main`, by pi-heif, which is None for some files, the pixels are not used. Neither Pillow nor PyAV crops.
+    The pixels of `main` are not used. Neither Pillow nor PyAV crops.
     """
     bit_depth = main.info["bit_depth"] if main else 8
-    with (
-        warnings.catch_warnings(action="ignore"),
-        AvifImageFile(path) as image,
-    ):  # not Image.open, which refuses 200 megapixels
+    with warnings.catch_warnings(action="ignore"), AvifImageFile(path) as image:
         check_size(path, *image.size)
         info = dict(image.info)
         if main and sorted(main.size) != sorted(image.size):
@@ -142,7 +139,7 @@ def _avif(path: Path, main: Any) -> _Picture:
 
 def _bmp(path: Path) -> _Picture:
     """Return the picture of a BMP file; refuse a palette other than of all grays, and less than 8 bits."""
-    with BmpImageFile(path) as image, path.open("rb") as file:  # not Image.open, which refuses 200 megapixels
+    with BmpImageFile(path) as image, path.open("rb") as file:
         check_size(path, *image.size)
         if image.mode in ("1", "P"):
             raise PhotoError("palette", path=path, kind="a BMP file with a palette")
@@ -158,7 +155,7 @@ def _bmp(path: Path) -> _Picture:
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
     """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
 
-    Matrix and range come from the file's box, which FFmpeg puts into the stream; a frame has them from its header.
+    Matrix and range come from the file's box, which FFmpeg puts into the stream, before those of the frame.
     """
     try:
         import av

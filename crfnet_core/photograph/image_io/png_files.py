@@ -17,23 +17,14 @@ import OpenImageIO as oiio
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import with_segments
 
-#: The color type of IHDR whose pixels are the numbers of colors in a table.
-_PALETTE = 3
-
 #: Chunks that are read -> the size of their content, in bytes; a profile and EXIF have any.
 _CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4, b"eXIf": None}
 
-#: The only one of them that may stand behind the pixels.
-_EXIF = b"eXIf"
+#: The only one of them that may stand behind the pixels, and those that override cHRM and gAMA.
+_EXIF, _BEFORE_CHROMATICITIES = b"eXIf", {b"cICP", b"iCCP", b"sRGB"}
 
-#: Bytes of the largest profile that is read.
-_MOST_PROFILE = 1 << 24
-
-#: Chunks that override cHRM and gAMA.
-_BEFORE_CHROMATICITIES = {b"cICP", b"iCCP", b"sRGB"}
-
-#: cHRM and gAMA hold 100 000 times their numbers.
-_UNIT = 100_000
+#: The color type of IHDR of a palette; bytes of the largest profile; cHRM and gAMA hold 100 000 times their numbers.
+_PALETTE, _MOST_PROFILE, _UNIT = 3, 1 << 24, 100_000
 
 
 def with_color_chunks(header: Any, path: Path) -> Any:

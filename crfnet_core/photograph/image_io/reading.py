@@ -32,11 +32,8 @@ from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
 from crfnet_core.photograph.photo import CodeValues, Photo
 
-#: Rows read at a time.
-_ROWS = 256
-
-#: Pages of a TIFF file that are searched for the largest.
-_MOST_PAGES = 64
+#: Rows read at a time, and pages of a TIFF file that are searched for the largest.
+_ROWS, _MOST_PAGES = 256, 64
 
 #: Formats whose second or fourth channel is alpha, of which OpenImageIO does not say so.
 LAST_ALPHA_KINDS = ("JPEG 2000", "JPEG XL")
@@ -86,13 +83,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
 
 def read_codes(path: str | os.PathLike[str]) -> CodeValues:
     """Return the integer samples of a file; accepts, ignores and raises as `read_photo`, which builds on it."""
-    path = Path(path)
-    with _named_errors(path):
-        kind = file_kind(path)
-        if kind in PILLOW_KINDS:
-            return read_pillow_file(path, kind)
-        with _opened(path, kind) as file:
-            return file.codes()
+    with _opened(Path(path)) as file:
+        return file if isinstance(file, CodeValues) else file.codes()
 
 
 def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
@@ -100,14 +92,11 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
 
     Raises as `read_photo` does, but does not see damage among the pixels.
     """
-    path = Path(path)
-    with _named_errors(path):
-        kind = file_kind(path)
-        if kind in PILLOW_KINDS:
-            return read_pillow_file(path, kind).metadata
-        with _opened(path, kind) as file:
-            checked_bit_depth(path, file.header, kind)
-            return file.metadata()
+    with _opened(Path(path)) as file:
+        if isinstance(file, CodeValues):
+            return file.metadata
+        checked_bit_depth(file.path, file.header, file.kind)
+        return file.metadata()
 
 
 @dataclass(frozen=True)
@@ -144,7 +133,7 @@ class _OpenFile:
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
         header = self._upright_header()
         if self.kind in UNSTATED_ALPHA_KINDS and header.alpha_channel > 0:
-            is_straight = _is_straight(values)
+            is_straight = _is_straight(values, 2**bit_depth - 1)
             if not is_straight and self.kind == "JPEG XL":
                 problem = "its colors may be multiplied by alpha"
                 raise PhotoError("coding_not_read", path=self.path, kind=self.kind, problem=problem)
@@ -173,11 +162,16 @@ class _OpenFile:
 
 
 @contextmanager
-def _named_errors(path: Path) -> Iterator[None]:
-    """Turn the system's refusals of a file, in the block, into a PhotoError."""
+def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
+    """Yield an open file, or all of it where OpenImageIO does not read it; refusals of the system are a PhotoError."""
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
-        yield
+        kind = file_kind(path)
+        if kind in PILLOW_KINDS:
+            yield read_pillow_file(path, kind)
+        else:
+            with _opened_kind(path, kind) as file:
+                yield file
     except UnicodeEncodeError as problem:
         raise PhotoError("name_not_utf8", path=ascii(str(path))) from problem
     except OSError as problem:
@@ -185,7 +179,7 @@ def _named_errors(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
+def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
@@ -209,7 +203,7 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
             with tempfile.TemporaryDirectory() as folder:
                 base = Path(folder, "base.jpg")
                 base.write_bytes(base_image(path))
-                with _opened(base, kind) as file:
+                with _opened_kind(base, kind) as file:
                     yield replace(file, path=path, has_gain_map=True)
         else:
             yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
@@ -228,10 +222,7 @@ def _seek_picture(source: Any) -> None:
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples in an open file up to alpha, shape (H, W, C), or None.
-
-    Of whole pictures OpenImageIO makes a copy.
-    """
+    """Return the samples of an open file up to alpha, (H, W, C), or None; of a whole picture OpenImageIO makes a copy."""
     channels = min(header.nchannels, max(4, header.alpha_channel + 1))
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)
@@ -246,9 +237,8 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     return values
 
 
-def _is_straight(samples: NDArray[Any]) -> bool:
+def _is_straight(samples: NDArray[Any], white: int) -> bool:
     """Return whether colors are not multiplied by alpha, as some are above it, or all of it is opaque."""
-    white = np.iinfo(samples.dtype).max
     samples = samples[samples[..., -1] < (1 - ABOVE_ALPHA) * white]
     is_above = samples[..., :-1].max(axis=-1, initial=0) > samples[..., -1] + ABOVE_ALPHA * white
     return bool(not samples.size or np.count_nonzero(is_above) > LEAST_ABOVE * len(samples))

@@ -1,8 +1,4 @@
-"""The color tags of files: primaries, code points of ITU-T H.273 (CICP), and encodings by name.
-
-HEIC, AVIF, PNG, ICC profiles and movies hold code points. Names stand for published curves: log of cinema cameras and
-film scans, PQ and HLG.
-"""
+"""The color tags of files: primaries, code points of ITU-T H.273 (CICP), and published curves by name."""
 
 from __future__ import annotations
 
@@ -12,10 +8,9 @@ from dataclasses import dataclass, replace
 
 from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020, Chromaticity, Primaries
 
-#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
+#: CIE illuminant C, the white of a cinema projector (SMPTE RP 431-2), and the primaries of old television.
 C: Chromaticity = (0.310, 0.316)
 DCI: Chromaticity = (0.314, 0.351)
-
 _SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
 
 #: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified"; 10, CIE XYZ, is not an RGB of a camera.
@@ -68,14 +63,10 @@ PROFILE_TRANSFERS = (
 
 @dataclass(frozen=True)
 class ColorTags:
-    """The color tags of a file.
-
-    `transfer` is the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"; empty if there is none,
-    or an ordinary one (sRGB, BT.709), which does not show a camera's response.
-    """
+    """The color tags of a file; `transfer` is empty for sRGB and BT.709, which do not show a camera's response."""
 
     primaries: Primaries | None = None  # None without a tag, or if it cannot be expressed by primaries: see `source`
-    transfer: str = ""
+    transfer: str = ""  # the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"
     source: str = ""  # the tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none
 
 

@@ -15,8 +15,7 @@ Table = tuple[int, ...]
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
 
-#: Entry of a header that a renderer writes -> the renderer. Blender writes it into the PNG and the JPEG files of a
-#: render, unless the scene's metadata says otherwise.
+#: Entry of the header of a PNG or JPEG file that a renderer writes, unless its settings say otherwise -> the renderer.
 RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
 

@@ -21,21 +21,15 @@ DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
 
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
-SAME_CHROMATICITIES = 2e-4
-
-#: Largest difference of a gamma from 1 that counts as linear.
-LINEAR_GAMMA = 0.04
-
-#: Least area of the triangle of primaries in x and y, doubled; Rec.709 has 0.22.
-LEAST_AREA = 0.01
+#: Least area of the triangle of primaries in x and y, doubled: Rec.709 has 0.22. Largest distance of a linear gamma to 1.
+SAME_CHROMATICITIES, LEAST_AREA, LINEAR_GAMMA = 2e-4, 0.01, 0.04
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
     """Return the color tags of an open file; the first source that has any is believed.
 
-    The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
-    Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
-    gives no primaries, and no other source does then. OpenImageIO does not read the InteroperabilityIndex of EXIF.
+    The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3). If it works by tables,
+    no other source gives primaries. OpenImageIO does not read the InteroperabilityIndex of EXIF.
     """
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))

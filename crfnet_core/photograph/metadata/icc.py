@@ -34,30 +34,23 @@ def _hlg_stops(codes: Float64Array) -> Float64Array:
 #: The source of tags from an ICC profile, and from one without primaries.
 SOURCE, TABLES = "ICC profile", "ICC profile of tables"
 
-#: XYZ of the profile connection space's white, D50 (7.2.16 of the specification).
-PCS_WHITE = np.array([0.9642, 1.0, 0.8249])
-
 #: Largest difference in XYZ from named primaries by which a profile's colorants count as theirs. Known profiles differ
 #: by up to 0.0002 (rounding to four digits, other values of D65); two of the named spaces by 0.06 or more.
 SAME_COLORANTS = 0.002
 
-#: Largest difference in XYZ between PCS_WHITE and the sum of the colorants of a profile that is not damaged.
-SAME_WHITE = 0.02
+#: XYZ of the profile connection space's white, D50 (7.2.16 of the specification), and the largest difference from it of
+#: the sum of the colorants of a profile that is not damaged.
+PCS_WHITE, SAME_WHITE = np.array([0.9642, 1.0, 0.8249]), 0.02
 
-#: Largest difference in L* between the gray ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
+#: Codes of a gray ramp, and the least range of its L*; a damaged profile may make it flat.
+_RAMP, LEAST_LIGHTNESS = np.arange(8, 256, 8, dtype=np.uint8), 30
+
+#: Largest difference in L* between the ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
 SAME_LIGHTNESS = 1.5
 
-#: Least range of L* of the ramp; a damaged profile may make it flat.
-LEAST_LIGHTNESS = 30
-
-#: The codes of the ramp.
-_RAMP = np.arange(8, 256, 8, dtype=np.uint8)
-
-#: Least number of samples by which an encoding is recognized.
-LEAST_COMPARED = 8
-
-#: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped.
-_COMPARED = (8, 98.5)
+#: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped; and the least
+#: number of codes there.
+_COMPARED, LEAST_COMPARED = (8, 98.5), 8
 
 #: Encoding -> the curve of its light, in stops; the powers of it that occur, as a display may add one; and the largest
 #: difference in stops. Log curves are like PQ, but for their exponent. sRGB and powers differ from all by 0.33.
@@ -77,8 +70,7 @@ _CICP = re.compile(rb"cicp\0{4}(....)", re.DOTALL)
 def read_icc(profile: bytes) -> ColorTags:
     """Return the tags of an ICC profile; empty if it cannot be read, or is of gray and of an ordinary curve.
 
-    Primaries are recognized by their matrix, not by the profile's description, which is free text. Of an unnamed matrix
-    the adaptation to D50 is undone, by the tag `chad`, or in version 2 from the media white.
+    Primaries are recognized by their matrix, of which the adaptation to D50 is undone.
     """
     try:
         return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
@@ -123,10 +115,7 @@ def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
 
 
 def _is_linear(lightness: Float64Array) -> bool:
-    """Return whether a ramp has the lightness of linear light (CIE 15:2018, 8.2.1).
-
-    Its ends may lie anywhere, as in profiles of scanners.
-    """
+    """Return whether a ramp has the lightness of linear light (CIE 15:2018, 8.2.1), wherever its ends lie."""
     first, last = ((lightness[[0, -1]] + 16) / 116) ** 3
     expected = 116 * np.cbrt(np.linspace(first, last, len(_RAMP))) - 16
     return bool(np.abs(lightness - expected).max() < SAME_LIGHTNESS)
