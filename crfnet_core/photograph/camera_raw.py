@@ -19,11 +19,8 @@ from crfnet_core.types import BoolArray, Float32Array, Float64Array
 #: the largest value for it to be the end of the range.
 SATURATED, PILE = 0.985, 1e-4
 
-#: Tag of DNG 1.2: PreviewApplicationName.
-_PREVIEW_PROGRAM = 50966
-
-#: Photosites along both sides of a Bayer pattern.
-_BAYER = (2, 2)
+#: Tag of DNG 1.2: PreviewApplicationName. And the photosites along both sides of a Bayer pattern.
+_PREVIEW_PROGRAM, _BAYER = 50966, (2, 2)
 
 
 @dataclass(frozen=True, eq=False)

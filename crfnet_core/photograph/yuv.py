@@ -1,7 +1,7 @@
 """YUV to RGB (ITU-T H.273, 8.3) for movies and AVIF: exact to half a code, chroma interpolated linearly at its place.
 
-FFmpeg's scaler is as exact for 8 bits only: with 10 bits it is up to 3.5 codes off, it garbles 4:2:0 of odd width, it
-leaves gray in limited range, and it places chroma of 4:2:2 between the luma samples.
+FFmpeg's scaler is up to 3.5 codes off at 10 bits, garbles 4:2:0 of odd width, leaves gray in limited range, and places
+chroma of 4:2:2 between the luma samples.
 """
 
 from __future__ import annotations
@@ -29,11 +29,8 @@ MATRICES = {
     9: ("BT.2020", 0.2627, 0.0593),
 }
 
-#: MatrixCoefficients of RGB, and of a stream that does not say.
-_RGB, _UNSPECIFIED = 0, 2
-
-#: AVColorRange: full, where black is code 0 and white the largest.
-_FULL_RANGE = 2
+#: MatrixCoefficients of RGB, and of a stream that does not say; AVColorRange of full range.
+_RGB, _UNSPECIFIED, _FULL_RANGE = 0, 2, 2
 
 #: Lines from which an untagged video is taken to have the matrix of BT.709, below it BT.601.
 HD_LINES = 720
@@ -100,10 +97,7 @@ def bit_depth(frame: VideoFrame) -> int:
 
 
 def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
-    """Return the RGB codes of a frame, 0 to `largest` (255 to 65535), rounded, uint8 or uint16, shape (H, W, 3).
-
-    They are not turned upright. Limited range is cut off below black and above white.
-    """
+    """Return the RGB codes of a frame as stored, 0 to `largest` (255 to 65535), rounded, uint8 or uint16, (H, W, 3)."""
     planes = _planes(frame)
     height, width = planes[0].shape
     codes = np.empty((height, width, 3), np.uint8 if largest <= 255 else np.uint16)
@@ -179,10 +173,7 @@ def _rgb(planes: Sequence[NDArray[Any]], rows: NDArray[np.intp], coding: Coding,
 
 
 def _full_size(plane: NDArray[Any], rows: NDArray[np.intp], shape: tuple[int, ...], coding: Coding) -> Float32Array:
-    """Return some rows of a chroma plane at the size of luma; between samples it is interpolated linearly.
-
-    Vertically, chroma of 4:2:0 lies between the lines; horizontally on every second sample, or between them.
-    """
+    """Return some rows of a chroma plane at the size of luma; vertically, its samples lie between those of luma."""
     ratios = [-(-luma // chroma) for luma, chroma in zip(shape, plane.shape, strict=True)]
     first, second, weight = _neighbors(rows, ratios[0], plane.shape[0], is_centered=True)
     lines = _blend(plane[first], plane[second], weight[:, None])

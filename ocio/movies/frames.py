@@ -34,21 +34,15 @@ WHITE = 65535
 
 @dataclass(frozen=True)
 class MovieFrames:
-    """Some frames of a movie, or all, by ascending numbers from 1: a `FrameSource`.
-
-    `missing` holds the numbers that were asked for and that the movie does not have.
-    """
+    """Some frames of a movie, or all, by ascending numbers from 1: a `FrameSource`."""
 
     movie: MovieStream
     numbers: tuple[int, ...]
-    missing: tuple[int, ...] = ()
+    missing: tuple[int, ...] = ()  # asked for, but the movie does not have them
 
     @classmethod
     def find(cls, path: Path, frames: str | Iterable[int] | None = None) -> MovieFrames:
-        """Return the frames of a movie: those asked for, as in `parse_frames`, or all.
-
-        Raise a PlateError if the movie cannot be read, has none of the frames, or `frames` is malformed.
-        """
+        """Return the frames of a movie asked for, as in `parse_frames`, or all; raise a PlateError if it has none."""
         wanted = None if frames is None else parse_frames(frames)
         movie = read_stream(path)
         existing = range(1, movie.frame_count + 1)
@@ -69,9 +63,9 @@ class MovieFrames:
         return replace(self, numbers=numbers, missing=())
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
-        """Yield what returns each frame, for positions that ascend: it is decoded at once, and converted when called.
+        """Yield what returns each frame, for ascending positions: it is decoded at once, and converted when called.
 
-        A frame that cannot be decoded, or has another form than the first, raises a PlateError when called.
+        A frame that cannot be decoded, or has another form than the first, raises a PlateError then.
         """
         for number, frame in decoded(self.movie, [self.numbers[position] for position in positions]):
             yield partial(_encoded, self.movie, number, frame)

@@ -34,16 +34,15 @@ Entry: TypeAlias = tuple[float, bool]
 ColorCodes: TypeAlias = tuple[int, ...]
 UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 
-#: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full.
-JPEG_CODECS = ("mjpeg", "mjpegb")
-
 #: Words of the messages of FFmpeg's decoders about damage that they fill in, and of its demuxers about files cut short.
 DAMAGE, CUT = ("CRC mismatch", "damaged", "error while decoding"), ("partial file", "ended prematurely")
 
 #: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
 MATROSKA, AVI = "matroska,webm", "avi"
 
-#: Codecs as people know them; others by FFmpeg's name.
+#: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full. Codecs as people
+#: know them; others by FFmpeg's name.
+JPEG_CODECS = ("mjpeg", "mjpegb")
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
 
 #: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one present counts.

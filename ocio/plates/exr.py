@@ -22,21 +22,9 @@ from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
 COPIED_METADATA = (
-    "DateTime",
-    "Exif:ExposureBiasValue",
-    "Exif:FocalLength",
-    "Exif:ISOSpeedRatings",
-    "Exif:LensModel",
-    "Exif:PhotographicSensitivity",
-    "ExposureTime",
-    "FNumber",
-    "FramesPerSecond",
-    "Make",
-    "Model",
-    "Orientation",
-    "PixelAspectRatio",
-    "smpte:KeyCode",
-    "smpte:TimeCode",
+    *("DateTime", "Exif:ExposureBiasValue", "Exif:FocalLength", "Exif:ISOSpeedRatings", "Exif:LensModel"),
+    *("Exif:PhotographicSensitivity", "ExposureTime", "FNumber", "FramesPerSecond", "Make", "Model", "Orientation"),
+    *("PixelAspectRatio", "smpte:KeyCode", "smpte:TimeCode"),
 )
 
 #: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
@@ -64,8 +52,7 @@ def linear_header(
 ) -> Any:
     """Return the OpenImageIO header of a linear plate of 3 channels, or 4 with alpha; `depth` is half or float.
 
-    The size, the windows and the `COPIED_METADATA` come from `source`, the header of the encoded plate; `attributes`
-    say what the values mean, as in `PlateLight.attributes`.
+    Size, windows and `COPIED_METADATA` are those of `source`, the encoded plate; `attributes` as in `PlateLight`.
     """
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
@@ -119,9 +106,8 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
 def _is_whole(path: Path, header: Any) -> bool:
     """Return whether the chunks of a file fill it without a gap: OpenEXR reports no error of its last writes.
 
-    With zips compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table
-    of their places last, over zeros. Only the leaders are read, and the last data, whose checksum zlib verifies.
-    Source: "OpenEXR File Layout", sections "Header", "Chunk Offset Table" and "Chunk Layout".
+    With zips compression each scanline is a chunk: its y, the size of its data, and the data ("OpenEXR File Layout").
+    The table of their places is written last, over zeros. zlib verifies the checksum of the last data.
     """
     try:
         with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:

@@ -20,14 +20,11 @@ from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
 
-#: Names of the one channel of a gray picture; any other is depth, a mask or other data.
-GRAY = ("Y", "R")
+#: Names of the one channel of a gray picture, and values of colorInteropID that say nothing of an encoding.
+GRAY, UNTAGGED = ("Y", "R"), ("", "unknown", "data")
 
 #: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
 MOST_BRIGHTNESS = 2
-
-#: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
-UNTAGGED = ("", "unknown", "data")
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,8 +52,7 @@ class PlateReport:
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
     """Return the linear EXR file of every frame, in the order of the frames; looks at no folder.
 
-    `out` is the .exr file, or for a sequence its pattern, such as `plate.%04d.exr`. Raise a PlateError if it does not
-    end in .exr, has no placeholder for the frames of a sequence, or names a plate.
+    `out` is the .exr file, or for a sequence its pattern. Raise a PlateError if it is neither, or names a plate.
     """
     out = Path(out)
     if out.suffix.lower() != ".exr":
@@ -82,16 +81,11 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    Gray becomes RGB. The color is divided by alpha where the file stores the product, and multiplied by it after the
-    LUT, as OpenEXR requires of coverage. Negative values stay. The output has the same bytes in every run.
-
-    A target that exists is whole, and is left alone unless `overwrite` is set: the same call resumes an interrupted
-    one, or is refused for another LUT, exposure, space or depth. A frame that another process finishes meanwhile is
-    checked, too.
-
-    A frame that fails does not stop the others. `workers` frames, by default one a core, up to `MAX_WORKERS`, are in
-    memory. `progress` counts finished and skipped frames, in this thread. Raise a CRFNetError before any frame is
-    written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
+    The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
+    requires of coverage. The output has the same bytes in every run. A target that exists is whole, and is left alone
+    unless `overwrite` is set: the same call resumes an interrupted one, or is refused for another LUT, exposure, space
+    or depth. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any frame is written if
+    the output does not fit the depth or finished frames differ, or at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if options.is_encoded and isinstance(sequence, FrameSequence):
@@ -191,10 +185,9 @@ class _Conversion:
 def finished(
     jobs: Iterable[tuple[Name, Callable[[], None]]], workers: int, *, waiting: int = 2
 ) -> Generator[tuple[Name, Future[None]]]:
-    """Yield named jobs as they finish, in threads.
+    """Yield named jobs as they finish, in threads; they are taken in this thread, while fewer than `waiting` wait.
 
-    Jobs are taken in this thread, one at a time, while fewer than `workers` run and `waiting` wait, so that no thread
-    waits for the next one. Close the iterator to end early: jobs that have begun are finished, the others dropped.
+    Close the iterator to end early: jobs that have begun are finished, the others dropped.
     """
     pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
     running: dict[Future[None], Name] = {}

@@ -44,10 +44,9 @@ class PlatePrimaries:
 
 
 def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimaries:
-    """Return the primaries of a plate by its tags, or by a choice: "rec709", "p3", "adobe", "prophoto" or "rec2020".
+    """Return the primaries of a plate by its tags ("auto"; Rec.709 without any), or by a choice such as "p3".
 
-    "auto" goes by the tags, and takes a file without any for Rec.709, as the sRGB standard has it. Raise a PlateError
-    if there is no such choice.
+    Raise a PlateError if there is no such choice.
     """
     if choice in PHOTOGRAPHIC:
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
@@ -106,8 +105,7 @@ class LinearSpace:
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
     """Return the space of a plate's linear values; `output` is one of `TARGETS`. Unknown primaries stay as they are.
 
-    The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
-    back. Raise a PlateError if there is no such space, or unknown primaries are to be converted to ACES.
+    Raise a PlateError if there is no such space, or unknown primaries are to be converted to ACES.
     """
     if output not in TARGETS:
         raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))

@@ -222,7 +222,7 @@ def _seek_picture(source: Any) -> None:
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples of an open file up to alpha, (H, W, C), or None; of a whole picture OpenImageIO makes a copy."""
+    """Return the samples of an open file up to alpha, (H, W, C), or None; OpenImageIO copies a picture read at once."""
     channels = min(header.nchannels, max(4, header.alpha_channel + 1))
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)

@@ -120,9 +120,8 @@ def device_of(make: str, model: str) -> Device:
         if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
             return device
     name = next((name for name in PATTERNS if maker.startswith(name)), "")
-    plain = re.sub(
-        rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*", "", model.casefold().strip()
-    )  # without the maker in front
+    front = rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*"  # the maker
+    plain = re.sub(front, "", model.casefold().strip())
     return next((device for pattern, device in PATTERNS.get(name, ()) if re.match(pattern, plain)), _UNKNOWN)
 
 

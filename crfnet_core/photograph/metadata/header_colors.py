@@ -21,7 +21,7 @@ DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
 
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
-#: Least area of the triangle of primaries in x and y, doubled: Rec.709 has 0.22. Largest distance of a linear gamma to 1.
+#: Least area of the triangle of primaries in x and y, doubled: Rec.709 has 0.22. How far from 1 a linear gamma may be.
 SAME_CHROMATICITIES, LEAST_AREA, LINEAR_GAMMA = 2e-4, 0.01, 0.04
 
 

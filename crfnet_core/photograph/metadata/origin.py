@@ -149,7 +149,7 @@ def _is_developed(metadata: FileMetadata, editor: str) -> bool:
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
     """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not show it.
 
-    Cameras begin it with EXIF, and most have tables of their own; libraries with JFIF, and IJG's tables; phones do both.
+    Cameras begin it with EXIF, and most have own tables; libraries with JFIF, and IJG's tables; phones do both.
     """
     if metadata.file_format != "JPEG" or not metadata.luma_table:
         return None
