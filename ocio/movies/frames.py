@@ -21,7 +21,7 @@ from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
 from .library import ffmpeg_line, opened
-from .stream import AVI, MovieStream, Picture, decoded_packet, is_shown, read_stream
+from .stream import MovieStream, Picture, decoded_packet, is_shown, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -73,21 +73,24 @@ class MovieFrames:
     def photos(self, numbers: Iterable[int]) -> Iterator[tuple[int, Photo]]:
         """Yield frames with their numbers, ascending, as photographs: codes of the stream's own depth.
 
-        Key frames are decoded alone, if no other frame is asked for. Damaged frames are left out.
+        Key frames are decoded alone if no other frame is asked for. Damaged frames are left out.
         """
         wanted = set(numbers)
-        decode = _decoded_keys if wanted <= set(self.movie.key_numbers) else decoded
-        for number, frame in decode(self.movie, wanted):
+        for number, frame in decoded(self.movie, wanted, keys_only=wanted <= set(self.movie.key_numbers)):
             if frame is not None:
                 yield number, _photo(self.movie, number, frame)
 
 
-def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, VideoFrame | None]]:
+def decoded(
+    movie: MovieStream, numbers: Iterable[int], *, keys_only: bool = False
+) -> Iterator[tuple[int, VideoFrame | None]]:
     """Yield frames, ascending by number from 1, each once; None for a frame that is damaged or absent."""
     pending = sorted(set(numbers), reverse=True)
     if not pending:
         return
     with opened(movie.path) as (container, stream):
+        if keys_only and movie.start > -inf:  # else only counting all frames gives their numbers
+            stream.codec_context.skip_frame = "NONKEY"
         for number, frame in enumerate(_in_order(movie, container, stream), 1):
             if number == pending[-1]:
                 yield pending.pop(), frame
@@ -108,7 +111,7 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
     for place, packet in enumerate(container.demux(stream)):
         if packet.dts is not None:
             clock, last = clock + (last is not None and packet.dts < last), packet.dts
-        time = None if container.format.name == AVI else packet.pts
+        time = packet.pts if movie.start > -inf else None
         if time is not None and is_shown(packet) and (clock or time >= movie.start):
             insort(pending, (clock, time, place))
         frames, is_damaged = decoded_packet(stream, packet)
@@ -128,25 +131,6 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
                 damaged_from = inf
             yield None if origin >= damaged_from else frame
     yield from [None] * len(pending)
-
-
-def _decoded_keys(movie: MovieStream, numbers: set[int]) -> Iterator[tuple[int, VideoFrame | None]]:
-    """Yield key frames, ascending by number, each decoded alone; None for one that is damaged."""
-    with opened(movie.path) as (container, stream):
-        stream.codec_context.skip_frame = "NONKEY"
-        keys = (packet for packet in container.demux(stream) if is_shown(packet) and packet.is_keyframe)
-        for number, packet in zip(movie.key_numbers, keys, strict=False):
-            if number in numbers:
-                yield number, _decoded_alone(stream, packet)
-
-
-def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
-    """Return the frame of a packet; None if it is damaged."""
-    results = [decoded_packet(stream, each) for each in (packet, None)]  # without a next one the decoder hands it out
-    stream.codec_context.flush_buffers()
-    frames = [frame for shown, _ in results for frame in shown]
-    is_damaged = any(damaged for _, damaged in results) or any(frame.is_corrupt for frame in frames)
-    return frames[0] if frames and not is_damaged else None
 
 
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:

@@ -34,8 +34,8 @@ SIGNATURES = (
 #: Distances in bytes between the sync bytes of an MPEG transport stream, and the place of the first one.
 _TRANSPORT = ((188, 0), (192, 4))
 
-#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display. And the seconds after
-#: which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
+#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display. And the seconds
+#: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 IPT_PROFILE, OPENING = 5, 60
 
 

@@ -23,8 +23,8 @@ PlateSource = FrameSequence | MovieFrames
 #: Where in each part of the movie a frame is looked for, in turn, and the samples along its longer side that count.
 PLACES, SAMPLES = (0.5, 0.7, 0.9), 96
 
-#: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there; and the least
-#: mean difference in brightness between two frames that do not show the same picture.
+#: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there; and the
+#: least mean difference in brightness between two frames that do not show the same picture.
 DARK, LIGHT, FRACTION, DIFFERENCE = 0.08, 0.98, 0.1, 0.01
 
 
@@ -54,9 +54,9 @@ def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
 def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator[tuple[int, Photo]]:
     """Yield up to `count` frames for an estimate, one at a time, ascending, each with its number.
 
-    They are key frames if there are enough, which have the best quality. Of each of `count` parts, the first at `PLACES`
-    is taken that is not nearly black or white and shows something new; the middle ones if none does. Raise a PlateError
-    if none of these can be decoded.
+    They are key frames if there are enough, which have the best quality. Of each of `count` parts, the first at
+    `PLACES` is taken that is not nearly black or white and shows something new; the middle ones if none does. Raise a
+    PlateError if none of these can be decoded.
     """
     keys = sorted(set(frames.numbers) & set(frames.movie.key_numbers))
     parts = [part.tolist() for part in np.array_split(keys if len(keys) >= count else frames.numbers, count)]

@@ -103,7 +103,7 @@ class MovieStream:
     frame_count: int  # of a file that is cut short one more, which cannot be decoded
     key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
     container: ColorCodes  # of the container, which count where the frames do not state theirs
-    start: float  # the time of the first frame, in the time base of its stream; -inf if unknown
+    start: float  # the time of the first frame, in the time base of its stream; -inf if times are unknown
     is_cut: bool = False
 
     def __str__(self) -> str:
@@ -234,7 +234,7 @@ def _described(
 ) -> MovieStream:
     """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
-    start = _start(packets, frame)
+    start = -inf if container.format.name == AVI else _start(packets, frame)
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     end = keys[1] if len(keys) > 1 else len(packets)  # from there on, the clock may run back
     packets = [entry for entry in packets[:end] if not entry[0] < start] + packets[end:]
