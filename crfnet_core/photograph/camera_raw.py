@@ -1,7 +1,4 @@
-"""Read camera raw: the light of the sensor as it stands in the file, and the camera's own JPEG in it.
-
-It needs rawpy (LibRaw), an optional dependency.
-"""
+"""Read camera raw with rawpy (LibRaw): the light of the sensor as it is stored, and the camera's own JPEG in it."""
 
 from __future__ import annotations
 

@@ -63,18 +63,12 @@ class MovieFrames:
         return replace(self, numbers=numbers, missing=())
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
-        """Yield what returns each frame, for ascending positions: it is decoded at once, and converted when called.
-
-        A frame that cannot be decoded, or has another form than the first, raises a PlateError then.
-        """
+        """Yield what returns each frame, or raises a PlateError: it is decoded at once, and converted when called."""
         for number, frame in decoded(self.movie, [self.numbers[position] for position in positions]):
             yield partial(_encoded, self.movie, number, frame)
 
     def photos(self, numbers: Iterable[int]) -> Iterator[tuple[int, Photo]]:
-        """Yield frames with their numbers, ascending, as photographs: codes of the stream's own depth.
-
-        Key frames are decoded alone if no other frame is asked for. Damaged frames are left out.
-        """
+        """Yield frames, ascending, as photographs of the stream's own depth; damaged ones are left out."""
         wanted = set(numbers)
         for number, frame in decoded(self.movie, wanted, keys_only=wanted <= set(self.movie.key_numbers)):
             if frame is not None:

@@ -74,10 +74,7 @@ def ffmpeg_line(path: Path, *, filters: str = "") -> str:
 
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
-    """Yield a movie, opened, and the video stream that FFmpeg ranks best: not a cover or a thumbnail.
-
-    Raise a PlateError if PyAV or a video is absent, or something in the block cannot be decoded.
-    """
+    """Yield a movie and its best video stream, not a cover; a PlateError if the block cannot open or decode it."""
     try:
         import av
     except ImportError:

@@ -142,10 +142,7 @@ def check_progressive(movie: MovieStream) -> None:
 
 
 def read_stream(path: Path) -> MovieStream:
-    """Return the description of a movie; reads it to its end, but decodes the first frame only.
-
-    Raise a PlateError if PyAV is absent, or the movie is damaged, too large, or of a coding that is not read.
-    """
+    """Return the description of a movie, read to its end, or refuse it; only the first frame is decoded."""
     with opened(path) as (container, stream):
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:

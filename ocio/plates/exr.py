@@ -50,10 +50,7 @@ ATTRIBUTE = re.compile(rb"[^\0]+\0[^\0]+\0(.{4})", re.DOTALL)
 def linear_header(
     source: Any, *, channels: int, depth: str, attributes: Mapping[str, str | float | tuple[float, ...]]
 ) -> Any:
-    """Return the OpenImageIO header of a linear plate of 3 channels, or 4 with alpha; `depth` is half or float.
-
-    Size, windows and `COPIED_METADATA` are those of `source`, the encoded plate; `attributes` as in `PlateLight`.
-    """
+    """Return the header of a linear plate of 3 or 4 channels, with `COPIED_METADATA` of `source`, the encoded plate."""
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
         setattr(header, name, getattr(source, name))
@@ -86,10 +83,7 @@ def _standard_attributes(header: Any) -> dict[str, str | float]:
 
 
 def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:
-    """Write float16 or float32 pixels, shape (H, W, 3 or 4), as an OpenEXR file with the header of `linear_header`.
-
-    Raise a PlateError that calls the file `name` if it is not whole, for example because the disk is full.
-    """
+    """Write pixels, (H, W, 3 or 4), as an OpenEXR file; raise a PlateError that calls it `name` if it is not whole."""
     output = oiio.ImageOutput.create(str(path))
     problem = oiio_message()
     if output is None:

@@ -13,10 +13,7 @@ MAX_FRAMES = 1_000_000
 
 
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
-    """Return the frame numbers of a specification, ascending and each once: numbers, or a text as Fileseq reads it.
-
-    Raise a PlateError if it is malformed, holds parts of frames, or more than `MAX_FRAMES` frames.
-    """
+    """Return the frame numbers of a specification, ascending, each once; raise a PlateError if Fileseq refuses it."""
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
     from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module

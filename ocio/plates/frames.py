@@ -1,7 +1,4 @@
-"""The frames that a name stands for: find their files, choose some of them.
-
-Fileseq finds the sequence of a folder, and is imported only there: see `frame_numbers`.
-"""
+"""The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
 from __future__ import annotations
 

@@ -86,10 +86,7 @@ def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS)
 def check_finished(
     frames: Iterable[Path], light: PlateLight, depth: str, *, sizes: Mapping[Path, tuple[int, int]] | None = None
 ) -> None:
-    """Raise a PlateError if finished frames have another exposure, LUT, space, sample type, size or source primaries.
-
-    `sizes` holds the width and height of the plates that are known. Files without our attributes, or unreadable, pass.
-    """
+    """Raise a PlateError if finished frames have another exposure, LUT, space, sample type, size or primaries."""
     for path in frames:
         written = _attributes(path)
         if EXPOSURE in written and (difference := _difference(written, light, depth, (sizes or {}).get(path))):

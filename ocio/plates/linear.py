@@ -50,10 +50,7 @@ class PlateReport:
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
-    """Return the linear EXR file of every frame, in the order of the frames; looks at no folder.
-
-    `out` is the .exr file, or for a sequence its pattern. Raise a PlateError if it is neither, or names a plate.
-    """
+    """Return the linear EXR file of every frame; raise a PlateError if `out` is no file or pattern for it, or a plate."""
     out = Path(out)
     if out.suffix.lower() != ".exr":
         raise PlateError("not_exr", path=out)
@@ -185,10 +182,7 @@ class _Conversion:
 def finished(
     jobs: Iterable[tuple[Name, Callable[[], None]]], workers: int, *, waiting: int = 2
 ) -> Generator[tuple[Name, Future[None]]]:
-    """Yield named jobs as they finish, in threads; they are taken in this thread, while fewer than `waiting` wait.
-
-    Close the iterator to end early: jobs that have begun are finished, the others dropped.
-    """
+    """Yield named jobs as they finish, in threads; they are taken in this thread, while fewer than `waiting` wait."""
     pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
     running: dict[Future[None], Name] = {}
     try:

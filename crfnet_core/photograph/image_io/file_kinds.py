@@ -96,10 +96,7 @@ def _is_raw(path: Path, head: bytes) -> bool:
 
 
 def tiff_directory(path: Path) -> dict[int, int]:
-    """Return tag -> value, or where the values stand, of a TIFF's first directory; empty if it is damaged.
-
-    Pillow's reader loads all values of a directory, each of which may claim the whole file.
-    """
+    """Return tag -> value, or its place, of a TIFF's first directory; Pillow would load values of any claimed size."""
     with path.open("rb") as file:
         head = file.read(8)
         order: Literal["little", "big"] = "little" if head.startswith(b"II") else "big"

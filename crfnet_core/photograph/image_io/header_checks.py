@@ -88,10 +88,7 @@ def with_plain_texts(header: Any) -> Any:
 
 
 def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
-    """Return a header with what OpenImageIO reads in the EXIF, XMP and ICC profile of a JPEG of one pixel.
-
-    So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
-    """
+    """Return a header with EXIF, XMP and ICC profile, as OpenImageIO reads and names them in a JPEG with them."""
     complete = oiio.ImageSpec(header)
     if exif := info.get("exif"):
         info = {**info, "exif": _EXIF_NAME + exif.removeprefix(_EXIF_NAME)}

@@ -22,10 +22,7 @@ _PREMULTIPLIED = 2
 
 
 def is_premultiplied(path: Path) -> bool:
-    """Return whether colors are multiplied by alpha, after checking that all pixels are read as they are meant.
-
-    Raise PhotoError for palettes, other spaces than sRGB and gray, signed samples, and subsampling of an odd size.
-    """
+    """Return whether colors are multiplied by alpha; raise PhotoError where OpenImageIO returns other pixels."""
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = content.find(_SIZE_MARKER)
         _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])

@@ -121,10 +121,7 @@ def _heic(main: Any) -> _Picture:
 
 
 def _avif(path: Path, main: Any) -> _Picture:
-    """Return the picture of an AVIF file as stored; Pillow puts its boxes `irot` and `imir` into EXIF.
-
-    The pixels of `main` are not used. Neither Pillow nor PyAV crops.
-    """
+    """Return the picture of an AVIF file as stored, by Pillow, which puts the boxes `irot` and `imir` into EXIF."""
     bit_depth = main.info["bit_depth"] if main else 8
     with warnings.catch_warnings(action="ignore"), AvifImageFile(path) as image:
         check_size(path, *image.size)

@@ -37,27 +37,14 @@ DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 #: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first. PeQ is
 #: libjxl's name of PQ.
 PROFILE_TRANSFERS = (
-    (r"\bs-?log ?3", "Sony S-Log3"),
-    (r"\bs-?log ?2", "Sony S-Log2"),
-    (r"\bs-?log\b", "Sony S-Log"),
-    (r"\blog ?c ?4", "ARRI LogC4"),
-    (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"),
-    (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
-    (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
-    (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
-    (r"\bv-?log", "Panasonic V-Log"),
-    (r"log3g10", "RED Log3G10"),
-    (r"log3g12", "RED Log3G12"),
-    (r"\bd-?log\b", "DJI D-Log"),
-    (r"\bapple ?log", "Apple Log"),
-    (r"\bf-?log ?2", "Fujifilm F-Log2"),
-    (r"\bf-?log\b", "Fujifilm F-Log"),
-    (r"\bn-?log", "Nikon N-Log"),
-    (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
-    (r"\bcineon|\bprinting density", "Cineon log"),
-    (r"\blogarithmic", "log"),
-    (r"\bpe?q\b|\bst ?2084", "PQ"),
-    (r"\bhlg\b|\bhybrid log", "HLG"),
+    *((r"\bs-?log ?3", "Sony S-Log3"), (r"\bs-?log ?2", "Sony S-Log2"), (r"\bs-?log\b", "Sony S-Log")),
+    *((r"\blog ?c ?4", "ARRI LogC4"), (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"), (r"\bapple ?log", "Apple Log")),
+    *((r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"), (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2")),
+    *((r"\b(?:canon|c)-? ?log\b", "Canon Log"), (r"\bv-?log", "Panasonic V-Log"), (r"\bd-?log\b", "DJI D-Log")),
+    *((r"log3g10", "RED Log3G10"), (r"log3g12", "RED Log3G12"), (r"\bn-?log", "Nikon N-Log")),
+    *((r"\bf-?log ?2", "Fujifilm F-Log2"), (r"\bf-?log\b", "Fujifilm F-Log")),
+    *((r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"), (r"\bcineon|\bprinting density", "Cineon log")),
+    *((r"\blogarithmic", "log"), (r"\bpe?q\b|\bst ?2084", "PQ"), (r"\bhlg\b|\bhybrid log", "HLG")),
 )
 
 

@@ -109,10 +109,7 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device by EXIF Make and Model; UNKNOWN where neither shows it.
-
-    Where the make is absent, the model may begin with it ("NIKON D90").
-    """
+    """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN."""
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker

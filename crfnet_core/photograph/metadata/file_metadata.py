@@ -21,10 +21,7 @@ RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
 @dataclass(frozen=True)
 class FileMetadata:
-    """The metadata of an image file; a field is empty or None where the file does not state it.
-
-    Texts hold printable characters only, and no spaces at their ends.
-    """
+    """The metadata of an image file; a field is empty or None where the file does not state it. Texts are printable."""
 
     width: int = 0  # of the upright picture, in pixels
     height: int = 0

@@ -68,10 +68,7 @@ _CICP = re.compile(rb"cicp\0{4}(....)", re.DOTALL)
 
 
 def read_icc(profile: bytes) -> ColorTags:
-    """Return the tags of an ICC profile; empty if it cannot be read, or is of gray and of an ordinary curve.
-
-    Primaries are recognized by their matrix, of which the adaptation to D50 is undone.
-    """
+    """Return the tags of an ICC profile; empty if it cannot be read, or is of gray and of an ordinary curve."""
     try:
         return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
     except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):  # damaged names are a ValueError

@@ -118,10 +118,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return `origin` with the device that the user states; it overrides the file's, but a rendering stays one.
-
-    UNKNOWN stands for a camera of another or an unknown kind. Raise ValueError if it is not a device.
-    """
+    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one."""
     if origin.renderer:
         return origin
     device = Device(device)
