@@ -50,7 +50,7 @@ class PlateReport:
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
-    """Return the linear EXR file of every frame; raise a PlateError if `out` is no file or pattern for it, or a plate."""
+    """Return the linear EXR file of every frame; raise a PlateError if `out` is no file or pattern, or a plate."""
     out = Path(out)
     if out.suffix.lower() != ".exr":
         raise PlateError("not_exr", path=out)

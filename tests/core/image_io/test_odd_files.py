@@ -90,14 +90,13 @@ def test_bmp_of_runs(tmp_path, size):
     assert read_codes(tmp_path / "a.bmp").codes[..., 0].tolist() == [[7, 7, 7, 7], [9, 9, 9, 8]]
 
 
-@pytest.mark.parametrize("name", ["a.bmp", "a.jp2", "a.jxl"])
+@pytest.mark.parametrize("name", ["a.bmp", "a.jxl"])
 def test_alpha_that_is_straight_by_the_format(tmp_path, name):
     codes = np.random.default_rng(0).integers(0, 256, (32, 32, 4), np.uint8)
     masks = (0xFF0000, 0xFF00, 0xFF, 0xFF000000)
     header = struct.pack("<IiiHHIIiiII", 108, 32, -32, 1, 32, 3, codes.size, 0, 0, 0, 0) + struct.pack("<4I", *masks)
     start = struct.pack("<2sIHHI", b"BM", 122 + codes.size, 0, 0, 122)
     (tmp_path / "a.bmp").write_bytes(start + header.ljust(108, b"\0") + codes[..., [2, 1, 0, 3]].tobytes())
-    Image.fromarray(codes).save(tmp_path / "a.jp2")
     write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100")
     values = read_codes(tmp_path / name)
     np.testing.assert_array_equal(values.alpha, codes[..., 3])

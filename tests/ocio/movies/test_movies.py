@@ -9,7 +9,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
-from crfnet.movies.stream import _key_numbers, check_progressive, read_stream
+from crfnet.movies.stream import check_progressive, read_stream
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, write_movie
 
@@ -87,20 +87,6 @@ def test_key_frames_are_decoded_alone(tmp_path, name):
     for number, photo in frames.photos(keys):
         np.testing.assert_array_equal(photo.pixels, everything[number].pixels)
     assert {number for number, _ in frames.photos(keys)} == set(keys)
-
-
-@pytest.mark.parametrize(
-    ("packets", "keys"),
-    [
-        ([], ()),
-        ([(None, False)] * 3, ()),
-        ([(0, True), (2, False), (1, False), (3, True), (4, False)], (1, 4)),
-        ([(2, True), (0, False), (1, False), (5, True), (3, False)], (3, 5)),  # an open group
-        ([(0, True), (1, False), (0, True), (1, False)], (1, 3)),  # two clocks
-    ],
-)
-def test_numbers_of_key_frames(packets, keys):
-    assert _key_numbers(packets) == keys
 
 
 def test_frames_are_chosen_and_missing_ones_named(movie):

@@ -35,13 +35,6 @@ def test_the_pixels_are_the_entries_of_the_lut(lut, tmp_path, depth, sample):
     assert header["compression"] == OpenEXR.ZIPS_COMPRESSION
 
 
-def test_alpha_is_multiplied_once(lut, tmp_path):
-    _, pixels = read_reference(linearized(lut, tmp_path, np.full((4, 5, 4), 128, dtype=np.uint8)))
-    alpha = 128 / 255
-    np.testing.assert_allclose(pixels[..., :3], alpha**3, rtol=1e-3)
-    np.testing.assert_allclose(pixels[..., 3], alpha, rtol=1e-3)
-
-
 def test_the_header_names_the_space_of_the_light(lut, tmp_path):
     path = linearized(lut, tmp_path, np.zeros((4, 5, 3), dtype=np.uint8), "--output-space", "ACEScg")
     header, _ = read_reference(path)
