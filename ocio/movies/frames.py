@@ -10,7 +10,6 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.photograph.orientation import upright
@@ -162,12 +161,7 @@ def _frame_header(movie: MovieStream) -> Any:
 def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
     """Return a frame as a photograph, upright."""
     _check_form(movie, number, frame)
-    largest = 2**movie.bit_depth - 1
-    codes = upright(rgb_codes(frame, movie.picture.coding, largest), movie.picture.turn)
-    return Photo(
-        pixels=np.divide(codes, np.float32(largest), dtype=np.float32),
-        bit_depth=movie.bit_depth,
-        is_gray=bool((codes == codes[..., :1]).all()),
-        path=movie.path.with_name(f"{movie.path.name} frame {number}"),
-        metadata=movie.file_metadata,
-    )
+    codes = upright(rgb_codes(frame, movie.picture.coding, 2**movie.bit_depth - 1), movie.picture.turn)
+    name = str(movie.path.with_name(f"{movie.path.name} frame {number}"))
+    metadata = movie.file_metadata
+    return Photo.from_array(codes, color_order="RGB", bit_depth=movie.bit_depth, name=name, metadata=metadata)

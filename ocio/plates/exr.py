@@ -30,14 +30,12 @@ COPIED_METADATA = (
 #: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
 #: other standard attributes OpenImageIO names itself: expTime, aperture, capDate, framesPerSecond, timeCode, keyCode.
 STANDARD_NAMES = {
-    "cameraMake": ("Make",),
-    "cameraModel": ("Model",),
-    "lensModel": ("Exif:LensModel",),
-    "nominalFocalLength": ("Exif:FocalLength",),
-    "isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings"),
+    **{"cameraMake": ("Make",), "cameraModel": ("Model",), "lensModel": ("Exif:LensModel",)},
+    **{"nominalFocalLength": ("Exif:FocalLength",)},  # in millimeters
+    **{"isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings")},
 }
 
-#: The numbers among them, in millimeters and as ISO arithmetic speed.
+#: The numbers among them.
 STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 
 #: NumPy's types of the two depths.
@@ -65,10 +63,8 @@ def linear_header(
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
-        elif isinstance(value, str):  # OpenImageIO takes nothing that is not Unicode
-            header.attribute(name, value.encode(errors="replace").decode())
-        else:
-            header.attribute(name, value)
+        else:  # OpenImageIO takes nothing that is not Unicode
+            header.attribute(name, value.encode(errors="replace").decode() if isinstance(value, str) else value)
     return header
 
 

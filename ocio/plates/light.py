@@ -20,11 +20,10 @@ from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
 
-#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and their source.
+#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and their source. The last
+#: two are the sample type, and width and height, which are not attributes.
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
 PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
-
-#: The names under which `_attributes` has the sample type, and width and height, which are not attributes.
 _DEPTH, _SIZE = "crfnet:depth", "crfnet:size"
 
 #: Largest difference in stops between exposures that are the same.

@@ -21,13 +21,12 @@ SIGNATURES = {
 #: How scene-linear files begin: they are refused.
 LINEAR_SIGNATURES = {"OpenEXR": (b"\x76\x2f\x31\x01",), "Radiance HDR": (b"#?RADIANCE", b"#?RGBE")}
 
-#: Suffixes of camera raw. Some of these files are read as their small preview, which must not pass for the photograph.
+#: Suffixes of camera raw, whose small preview must not pass for the photograph; how raw files begin that are not plain
+#: TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
 RAW_SUFFIXES = (
     *(".3fr", ".ari", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos"),
     *(".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"),
 )
-
-#: How raw files begin that are not plain TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
 #: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, ExtraSamples, DNGVersion.

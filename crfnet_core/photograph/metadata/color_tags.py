@@ -65,14 +65,11 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
     return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
 
 
-def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
-    """Return tags with the encoding that DPX's transfer characteristic or an ICC profile's name states, if without."""
-    if color.transfer:
+def with_dpx_transfer(color: ColorTags, name: str) -> ColorTags:
+    """Return tags with the encoding that DPX's transfer characteristic names, if without."""
+    if color.transfer or name not in DPX_TRANSFERS:
         return color
-    if dpx in DPX_TRANSFERS:
-        return replace(color, transfer=DPX_TRANSFERS[dpx], source=color.source or f'dpx:Transfer "{dpx}"')
-    name = profile_transfer(profile)
-    return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
+    return replace(color, transfer=DPX_TRANSFERS[name], source=color.source or f'dpx:Transfer "{name}"')
 
 
 def profile_transfer(profile: str) -> str:

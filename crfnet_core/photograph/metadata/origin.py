@@ -12,17 +12,14 @@ from crfnet_core.photograph.metadata.editors import editor_name, is_developer
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ijg_quality
 
-#: The editor of a file that has a segment of Adobe, or names a raw file, but does not name a program.
+#: The editor of a file that has a segment of Adobe, or names a raw file, but does not name a program; and ends, in
+#: lower case, of the names of files that are not raw.
 ADOBE = "a program of Adobe"
-
-#: Ends, in lower case, of the names of files that are not raw.
 ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".heif", ".webp", ".avif", ".jxl")
 
 #: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
-#: 18:9 to 20:9 are the screens of phones.
+#: 18:9 to 20:9 are the screens of phones. And how far from the ratio in EXIF: scaled sides are rounded.
 SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "2:1": (2.1, 0.07)}
-
-#: A picture and the size in EXIF have one shape if their ratios differ by less than this: scaled sides are rounded.
 SAME_SHAPE = 0.02
 
 #: Longest side in pixels below which a picture counts as scaled, unless EXIF has the same size and both sides are whole
