@@ -64,31 +64,26 @@ class Coding:
         `codes` are matrix and range by the container; they override the frame's. For a still picture (JPEG or AVIF),
         untagged means BT.601 in full range.
         """
-        form, bits = frame.format, bit_depth(frame)
+        form, bits, lines = frame.format, bit_depth(frame), frame.height
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
             return None
-        if form.is_rgb or form.has_palette:
-            return cls("RGB", 0.0, 0.0, is_full_range=True, is_centered=False)
         matrix, color_range = codes or (int(frame.colorspace), int(frame.color_range))
-        if len(form.components) < 3:  # gray has no matrix; untagged it is full range, as FFmpeg takes it
-            is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
-            assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()
-            return cls("RGB", 0.0, 0.0, is_full_range=is_full, is_centered=False, assumptions=assumptions)
-        return cls._yuv(matrix, color_range, frame.height, is_still=is_still)
-
-    @classmethod
-    def _yuv(cls, matrix: int, color_range: int, lines: int, *, is_still: bool) -> Coding | None:
-        """Return the coding of luma and chroma."""
-        assumptions = []
-        if matrix in (_UNSPECIFIED, _RGB):
-            matrix = 5 if is_still or lines < HD_LINES else 1
-            assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
-        if color_range == 0:
-            assumptions.append("does not say its range: limited taken")
-        if matrix not in MATRICES:
-            return None
-        is_full = color_range == _FULL_RANGE or (color_range == 0 and is_still)
-        return cls(*MATRICES[matrix], is_full, is_still, () if is_still else tuple(assumptions))
+        is_rgb, is_gray = form.is_rgb or form.has_palette, len(form.components) < 3
+        is_full, assumptions = is_rgb or color_range == _FULL_RANGE, []
+        if is_rgb or is_gray:
+            weights: tuple[str, float, float] | None = ("RGB", 0.0, 0.0)
+        else:
+            if matrix in (_UNSPECIFIED, _RGB):
+                matrix = 5 if is_still or lines < HD_LINES else 1
+                assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
+            weights = MATRICES.get(matrix)
+        if not is_rgb and color_range == 0:  # gray is full range, as FFmpeg takes it
+            is_full = is_still or is_gray
+            assumptions.append(f"does not say its range: {'full taken, as it is gray' if is_gray else 'limited taken'}")
+        if len(form.components) in (2, 4):
+            assumptions.append("does not say how its alpha is meant: colors not multiplied by it taken")
+        centered = is_still and not (is_rgb or is_gray)
+        return weights and cls(*weights, is_full, centered, () if is_still else tuple(assumptions))
 
 
 def bit_depth(frame: VideoFrame) -> int:

@@ -226,7 +226,9 @@ def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path):
 
 def test_alpha_is_kept(tmp_path):
     path = write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuva444p10le", options={"profile": "4444"})
-    np.testing.assert_allclose(next(MovieFrames.find(path).loaders([0]))().alpha, 1, atol=0.01)
+    frames = MovieFrames.find(path)
+    np.testing.assert_allclose(next(frames.loaders([0]))().alpha, 1, atol=0.01)
+    assert "does not say how its alpha is meant" in str(frames.movie)
 
 
 def test_what_is_not_a_movie(tmp_path):
