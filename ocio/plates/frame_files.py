@@ -176,7 +176,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
     names = set(header.channelnames)
-    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBYA"}
     if (
         header.deep
         or not kinds <= {"half", "float"}

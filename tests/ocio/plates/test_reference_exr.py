@@ -5,11 +5,14 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet.cli.main import main
+from crfnet.errors import PlateError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.plates import exr
+from crfnet.plates.frame_files import read_frame
 from tests.helpers.images import write_image
 from tests.helpers.reference_exr import OpenEXR, read_reference
+from tests.helpers.refusals import refused
 
 
 @pytest.fixture
@@ -40,6 +43,14 @@ def test_the_header_names_the_space_of_the_light(lut, tmp_path):
     header, _ = read_reference(path)
     assert header["colorInteropID"] == "lin_ap1_scene"
     assert header["dataWindow"][1].tolist() == [4, 3]
+
+
+def test_alpha_of_whole_numbers_is_refused(tmp_path):
+    """It holds the numbers of objects, not coverage."""
+    picture = {"RGB": np.full((4, 5, 3), 0.5, np.float32), "A": np.ones((4, 5), np.uint32)}
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, picture).write(str(tmp_path / "a.exr"))
+    with refused(PlateError, "exr_channels"):
+        read_frame(tmp_path / "a.exr", is_encoded=True)
 
 
 @pytest.mark.parametrize("width", [90, 8000])  # rows of less and of more than a page of memory
