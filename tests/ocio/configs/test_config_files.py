@@ -1,5 +1,6 @@
 """A config is written only if OpenColorIO converts as its LUTs do; the real tools read it."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -84,6 +85,21 @@ class TestLoading:
     def test_a_written_config_is_loaded(self, folder):
         write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
         assert load_config(folder / "config.ocio").getColorSpace("CRF plate01") is not None
+
+    @pytest.mark.parametrize("direction", ["toReference", "fromReference"])
+    def test_a_lut_that_is_a_device_is_refused(self, folder, direction):
+        """OpenColorIO would read a device without end, and wait for the writer of a pipe."""
+        path = folder / "config.ocio"
+        for source, code in (("absent.spi1d", None), (os.devnull, "config_reads_device")):
+            config = portable_config([SPACE])
+            steps = OCIO.GroupTransform([OCIO.FileTransform(source)])
+            config.addColorSpace(OCIO.ColorSpace(name="lut", **{direction: steps}))
+            path.write_text(config.serialize())
+            if code:
+                with refused(ConfigError, code):
+                    load_config(path)
+            else:
+                load_config(path)
 
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_another_file_is_refused(self, tmp_path, text):
