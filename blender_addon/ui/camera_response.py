@@ -30,7 +30,7 @@ class CRF_CameraResponse(bpy.types.PropertyGroup):
         description="Whether the image or clip has a response", get=_getter(lambda _: True, False)
     )
     verdict: bpy.props.StringProperty(
-        description='"good", "usable" or "do not trust"; empty for a response from a LUT',
+        description='"usable" or "do not trust"; empty for a response from a LUT',
         get=_getter(lambda plate: stored_estimate.verdict(plate) if stored_estimate.has_verdict(plate) else "", ""),
     )
     expected_error: bpy.props.FloatProperty(

@@ -79,7 +79,7 @@ def test_a_response_can_be_read_but_not_changed(addon, plate_file, kind):
     entries["notices"] = '[["clipped", {}], ["gray", {}]]'
     assert response.warnings == ("clipped", "gray")
     with pytest.raises(AttributeError, match="read-only"):
-        response.verdict = "good"
+        response.verdict = "usable"
 
 
 def test_what_was_applied_can_be_read(estimated):
