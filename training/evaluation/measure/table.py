@@ -91,7 +91,7 @@ class Table:
 def code_digest() -> str:
     """Return a short hash of the measuring code, in a checkout of the repository."""
     root, digest = Path(__file__).parents[3], hashlib.sha256()
-    for path in (path for pattern in MEASURING_CODE for path in sorted(root.glob(pattern))):
+    for path in sorted(path for pattern in MEASURING_CODE for path in root.glob(pattern)):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
