@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.files import cut_to_bytes
-from crfnet_core.staging import remove_abandoned
+from crfnet_core.files import check_target, cut_to_bytes
+from crfnet_core.staging import remove_abandoned, staged_files
 
 from .defaults import CONFIG_NAME
 from .errors import PlateError
@@ -157,3 +157,18 @@ def output_folder(folder: Path) -> Iterator[None]:
             with suppress(OSError):
                 path.rmdir()
         raise
+
+
+@contextmanager
+def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
+    """Yield the folder that a block writes files to; they take their names together or not at all."""
+    folder = targets[0].parent
+    check_folder(folder)
+    try:
+        with output_folder(folder):
+            for target in targets:
+                check_target(target, overwrite=overwrite)
+            with staged_files(folder, overwrite=overwrite) as temporary:
+                yield temporary
+    except OSError as problem:  # such as on Windows, which does not say before what is not allowed
+        raise PlateError("folder_not_written", path=folder, reason=problem.strerror or problem) from problem

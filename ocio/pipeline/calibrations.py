@@ -21,9 +21,8 @@ from ..luts.files import write_lut
 from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
-from ..output_files import OutputFiles
+from ..output_files import OutputFiles, all_or_none
 from ..report import Measured, calibration_document, calibration_provenance
-from .delivery import all_or_none
 from .plan import OutputPlan, plan_files
 
 

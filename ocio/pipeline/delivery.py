@@ -5,16 +5,14 @@ The command and the add-on write with `deliver`: all files of a plan appear toge
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.colorimetry import REC709
-from crfnet_core.files import atomic_write_text, check_target, json_text
-from crfnet_core.staging import staged_files
+from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.types import Progress
 
 from ..configs.files import write_config
@@ -24,7 +22,7 @@ from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
 from ..options import PlateOptions
-from ..output_files import OutputFiles, check_config_folder, check_folder, output_folder
+from ..output_files import OutputFiles, all_or_none, check_config_folder
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
@@ -123,22 +121,6 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
 
     first = estimated.photographs[0]
     draw_sheet(path, first.preview, estimated.estimate, stride=first.stride)
-
-
-@contextmanager
-def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
-    """Yield the folder that a block writes files to; they take their names together or not at all."""
-    folder = targets[0].parent
-    check_folder(folder)
-    with ExitStack() as stack:
-        try:
-            stack.enter_context(output_folder(folder))
-            for target in targets:
-                check_target(target, overwrite=overwrite)
-            temporary = stack.enter_context(staged_files(folder, overwrite=overwrite))
-        except OSError as problem:  # such as on Windows, which does not say before what is not allowed
-            raise PlateError("folder_not_written", path=folder, reason=problem.strerror or problem) from problem
-        yield temporary
 
 
 def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
