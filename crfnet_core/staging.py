@@ -181,5 +181,6 @@ def _remove(temporary: Path, folder: Path) -> None:
                 path.unlink()
             else:
                 path.replace(folder / path.name)
-    if not any(temporary.glob(f"{_EARLIER}*/*")):
-        shutil.rmtree(temporary, ignore_errors=True)
+    with suppress(OSError):  # also of closing a folder, which `ignore_errors` does not ignore
+        if not any(temporary.glob(f"{_EARLIER}*/*")):
+            shutil.rmtree(temporary, ignore_errors=True)
