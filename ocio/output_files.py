@@ -62,15 +62,6 @@ class OutputFiles:
         sheet = () if self.sheet is None else (self.sheet,)
         return (*self.luts, *self.forward, *self.linear, *sheet, self.report)
 
-    def in_folder(self, folder: Path) -> OutputFiles:
-        """Return the same files in another folder."""
-        luts, linear, forward = (
-            tuple(folder / path.name for path in paths) for paths in (self.luts, self.linear, self.forward)
-        )
-        config, report = folder / self.config.name, folder / self.report.name
-        sheet = self.sheet and folder / self.sheet.name
-        return OutputFiles(luts, config, linear, sheet, report, self.color_space, forward)
-
 
 def plain_stem(photo: Path) -> str:
     """Return a file's name without its suffix, with `_` for what configs, patterns or other systems interpret.

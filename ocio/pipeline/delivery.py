@@ -22,7 +22,7 @@ from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
 from ..options import PlateOptions
-from ..output_files import OutputFiles, all_or_none, check_config_folder
+from ..output_files import all_or_none, check_config_folder
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
@@ -74,27 +74,28 @@ def deliver(
     if plan.space:
         check_config_folder(plan.files.config.parent)
     with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
-        files = plan.files.in_folder(folder)
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
-        linear = pool.submit(_write_linear, files.linear, sources, light, plan.plates, linearize, progress)
-        _write_luts(files, plan, light)
+        frames = [folder / path.name for path in plan.files.linear]
+        linear = pool.submit(_write_linear, frames, sources, light, plan.plates, linearize, progress)
+        _write_luts(folder, plan, light)
         for path, write in more.items():
             write(folder / path.name)
         linear.result()
     return written
 
 
-def _write_luts(files: OutputFiles, plan: OutputPlan, light: PlateLight) -> None:
+def _write_luts(folder: Path, plan: OutputPlan, light: PlateLight) -> None:
     """Write the LUTs and the config that a plan has."""
+    files = plan.files
     for path in files.luts if plan.lut_length else ():
-        write_lut(path, light.lut)
+        write_lut(folder / path.name, light.lut)
     if files.forward:
         forward = forward_lut(light.lut)
         for path in files.forward:
-            write_lut(path, forward)
+            write_lut(folder / path.name, forward)
     if plan.space:
         config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
-        write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
+        write_config(folder / files.config.name, config, check={files.color_space: light.lut.channels[0]})
 
 
 def _write_linear(

@@ -1,4 +1,3 @@
-import errno
 import os
 import stat
 from contextlib import suppress
@@ -70,18 +69,6 @@ def test_the_mask_of_permissions_holds_and_is_left_alone(tmp_path, monkeypatch):
         monkeypatch.undo()
         os.umask(earlier)
     assert stat.S_IMODE((tmp_path / "plate.cube").stat().st_mode) == 0o640
-
-
-@pytest.mark.parametrize("call", ["fsync", "close", "rename"])
-def test_a_call_that_fails_leaves_nothing(tmp_path, monkeypatch, call):
-    def fail(*_arguments):
-        monkeypatch.undo()
-        raise OSError(errno.EIO, "Input/output error")
-
-    with pytest.raises(CRFNetError) as caught, atomic_write(tmp_path / "plate.cube"):
-        monkeypatch.setattr(os, "replace" if call == "rename" else call, fail)
-    assert (caught.value.code, caught.value.facts["reason"]) == ("not_written", "Input/output error")
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("character", ["a", "\U0001f4f7"])
