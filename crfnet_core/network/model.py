@@ -17,7 +17,7 @@ MODELS = Path(__file__).parents[1] / "models"
 DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 
 #: Size in bytes of the largest model.onnx that is read.
-MAX_GRAPH_SIZE = 256 * 2**20
+MAX_GRAPH_SIZE = 64 * 2**20
 
 #: Basis and side of the windows that every network is made for, the numbers of weights that its evidence may be about,
 #: and the inputs that it may read.

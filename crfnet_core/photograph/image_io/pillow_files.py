@@ -22,7 +22,8 @@ from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size, with_segments
+from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, with_segments
+from crfnet_core.photograph.image_io.heif_items import decoded_pixels, meta_box
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
@@ -31,8 +32,8 @@ from crfnet_core.photograph.yuv import Coding, rgb_codes
 #: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
-#: Bytes at the start of a file in which the boxes `ftyp` and `meta` are looked for (ISO/IEC 14496-12).
-_HEAD_BYTES = 1 << 20
+#: Most pixels that are decoded for the main picture: of its tiles, and of the picture that they make.
+MOST_DECODED = 4 * MAX_PIXELS
 
 #: Marks of a gain map: Apple's auxiliary picture, and the item and brand of ISO 21496-1.
 _GAIN_MAPS = (b"urn:com:apple:photo:2020:aux:hdrgainmap", b"tmap")
@@ -91,12 +92,14 @@ def _opened_heif(path: Path, kind: str, boxes: bytes) -> Any:
 
 
 def _boxes(path: Path) -> bytes:
-    """Return the boxes `ftyp` and `meta`; where the second is not found, the first alone."""
-    with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
-    files = head[: int.from_bytes(head[:4])]
-    start = max(0, head.find(b"meta", len(files)) - 4)
-    return files + (head[start : start + int.from_bytes(head[start : start + 4])] if start else b"")
+    """Return the content of the box `meta`; raise PhotoError if its items would be decoded again and again."""
+    try:
+        boxes = meta_box(path)
+        if decoded_pixels(boxes) > MOST_DECODED:
+            raise ValueError("its tiles have many more pixels than the picture")
+    except (IndexError, ValueError) as problem:
+        raise problems.damaged(path, "HEIF", str(problem)) from None
+    return boxes
 
 
 def _has_named_items(boxes: bytes) -> bool:

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.configs.files import MAX_CONFIG_SIZE, load_config, write_config
