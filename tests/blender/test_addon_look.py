@@ -7,16 +7,12 @@ from crfnet.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 
-from .helpers import IS_BLENDER_5, apply, bpy, curve_of, estimate, group_node, load, scene_tree
+from .helpers import IS_BLENDER_5, apply, bpy, curve_of, estimate, group_node, load, output, scene_tree
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
 #: Largest difference from the code values of the plate, white = 1.
 ROUND_TRIP = 1e-5
-
-
-def output():
-    return next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
 
 
 @pytest.fixture

@@ -1,11 +1,8 @@
 """What the panel shows: settings, words and the icon of the response."""
 
-import numpy as np
 import pytest
 
-from tests.helpers.images import write_image
-
-from .helpers import Layout, Panel, apply, bpy, drawn_in, estimate, labels, load, operators
+from .helpers import Layout, Panel, apply, bpy, drawn_in, estimate, labels, operators
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -72,12 +69,6 @@ def test_a_narrow_range_is_no_more_than_the_mean_of_cameras(image, in_editor):
         first, *others = labels(drawn_in(image, in_editor))
         assert first == ("Do not trust" if verdict == "do not trust" else "Mean of cameras")
         assert "Look at the linear plate" not in " ".join(others)
-
-
-def test_a_gray_card_is_not_to_be_trusted(addon, in_editor, tmp_path):
-    card = load(write_image(tmp_path / "card.png", np.full((256, 256, 3), 118, np.uint8)))
-    estimate(card)
-    assert labels(drawn_in(card, in_editor))[0] == "Do not trust: flat frame"
 
 
 def test_settings_that_wait_to_be_applied_are_told(image, in_editor):

@@ -5,7 +5,7 @@ import pytest
 
 from tests.blender.conftest import rendered
 
-from .helpers import apply, bpy, curve_of, drawn_in, group_node, groups, labels, operators, scene_tree
+from .helpers import apply, bpy, curve_of, drawn_in, group_node, groups, labels, operators, output, scene_tree
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -20,13 +20,9 @@ def cube(image):
     scene.render.engine, scene.cycles.samples = "CYCLES", 1
 
 
-def output():
-    return next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE")).inputs[0]
-
-
 def over():
     """The node before the output or the Camera Look, with the nodes that lead to its background and its foreground."""
-    node = output().links[0].from_node
+    node = output().inputs[0].links[0].from_node
     node = node.inputs["Image"].links[0].from_node if node.type == "GROUP" else node
     assert node.type == "ALPHAOVER"
     return node, *(socket.links[0].from_node for socket in node.inputs if socket.type == "RGBA")
@@ -36,7 +32,7 @@ def blur_the_render():
     """Make a tree as an artist would."""
     layers, blur = (scene_tree().nodes.new(f"CompositorNode{kind}") for kind in ("RLayers", "Blur"))
     scene_tree().links.new(layers.outputs["Image"], blur.inputs["Image"])
-    scene_tree().links.new(blur.outputs["Image"], output())
+    scene_tree().links.new(blur.outputs["Image"], output().inputs[0])
     return blur
 
 
@@ -47,9 +43,9 @@ def test_the_render_stands_over_the_linear_plate(cube, image, codes, tmp_path):
     assert scene.render.film_transparent
     assert not image.camera_response_settings.compose  # there is a comp now
     (viewer,) = (node for node in scene_tree().nodes if node.type == "VIEWER")
-    assert viewer.inputs["Image"].links[0].from_node == over()[0] == output().links[0].from_node
+    assert viewer.inputs["Image"].links[0].from_node == over()[0] == output().inputs[0].links[0].from_node
     comp = rendered(scene, tmp_path / "comp.exr", (256, 256), has_render=True)
-    scene_tree().links.new(over()[2].outputs[0], output())
+    scene_tree().links.new(over()[2].outputs[0], output().inputs[0])
     render = rendered(scene, tmp_path / "render.exr", (256, 256), has_render=True)
     is_cube, is_plate = render[..., 3] == 1, ~render.any(axis=2)
     assert is_cube[128, 128]
@@ -74,7 +70,7 @@ def test_nodes_of_the_artist_are_left_alone_or_on_demand_stay_in_front(image, tr
     assert not image.camera_response_settings.compose
     apply(image, **choices)
     assert bpy.context.scene.render.film_transparent == bool(choices)
-    assert output().links[0].from_node == group_node("Camera Look")
+    assert output().inputs[0].links[0].from_node == group_node("Camera Look")
     if choices:
         assert over()[1].inputs["Image"].links[0].from_node == group_node()
         assert over()[2] == blur
