@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,10 @@ def with_color_chunks(header: Any, path: Path) -> Any:
     """
     chunks, complete = _chunks(path), oiio.ImageSpec(header)
     complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
-    complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": _profile(chunks)})
+    profile = b""
+    with suppress(zlib.error):  # behind its name; a byte names the only method
+        profile = zlib.decompressobj().decompress(chunks.get(b"iCCP", b"").partition(b"\0")[2][1:], _MOST_PROFILE)
+    complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": profile})
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]
     complete.attribute("png:palette", int(color_type == _PALETTE))
     complete.attribute("oiio:BitsPerSample", bits)  # OpenImageIO widens fewer to 8
@@ -53,15 +56,6 @@ def with_color_chunks(header: Any, path: Path) -> Any:
         if b"gAMA" in chunks:
             complete.attribute("png:gamma", struct.unpack(">I", chunks[b"gAMA"])[0] / _UNIT)
     return complete
-
-
-def _profile(chunks: Mapping[bytes, bytes]) -> bytes:
-    """Return the ICC profile; empty if it is absent or damaged."""
-    _, _, compressed = chunks.get(b"iCCP", b"").partition(b"\0")  # behind its name; a byte names the only method
-    try:
-        return zlib.decompressobj().decompress(compressed[1:], _MOST_PROFILE)
-    except zlib.error:
-        return b""
 
 
 def _chunks(path: Path) -> dict[bytes, bytes]:
