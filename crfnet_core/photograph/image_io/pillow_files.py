@@ -21,8 +21,7 @@ from PIL.AvifImagePlugin import AvifImageFile
 from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size, with_segments
+from crfnet_core.photograph.image_io.header_checks import check_size, damaged, with_segments
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
@@ -71,7 +70,7 @@ def read_pillow_file(path: Path, kind: str) -> CodeValues:
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
-        raise problems.damaged(path, kind, str(problem)) from None
+        raise damaged(path, kind, str(problem)) from None
     nclx = main.info.get("nclx_profile") if main else None
     cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
     return _code_values(picture, kind, cicp, has_gain_map=any(mark in boxes for mark in _GAIN_MAPS))
