@@ -16,7 +16,7 @@ from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
-from crfnet_core.photograph.orientation import UPRIGHT, Turn
+from crfnet_core.photograph.photo import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError

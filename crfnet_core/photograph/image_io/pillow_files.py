@@ -23,8 +23,7 @@ from PIL.BmpImagePlugin import BmpImageFile
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import check_size, damaged, with_segments
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
-from crfnet_core.photograph.photo import CodeArray, CodeValues
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeValues, upright
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
 #: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.

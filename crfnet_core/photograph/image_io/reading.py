@@ -30,8 +30,7 @@ from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, che
 from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
-from crfnet_core.photograph.photo import CodeValues, Photo
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
 #: Rows read at a time, and pages of a TIFF file that are searched for the largest.
 _ROWS, _MOST_PAGES = 256, 64
