@@ -54,11 +54,9 @@ class _Picture:
 
 
 def read_pillow_file(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, turned upright as the file says.
+    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, upright, as RGB in full range.
 
-    Limited range is expanded, and YCbCr turned into RGB by the file's own matrix. The header has the names that
-    OpenImageIO gives to the EXIF, XMP and ICC profile of a JPEG, and `CICP`, four integers. Raise PhotoError if the
-    file is damaged or too large, or the library that decodes it is not installed.
+    The header has the names that OpenImageIO gives to a JPEG's, and `CICP`, four integers. Raises as `read_photo`.
     """
     boxes, main = b"", None
     try:

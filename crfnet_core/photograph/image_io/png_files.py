@@ -1,7 +1,6 @@
-"""PNG: the chunks of colors, which OpenImageIO leaves out in part, and EXIF behind the pixels.
+"""PNG: the chunks of colors and EXIF behind the pixels, which OpenImageIO leaves out in part, as does Pillow.
 
-OpenImageIO also leaves out profiles that libpng dislikes. Pillow leaves out cICP, and does not say whether it widened
-samples of fewer bits. Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
+Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
 """
 
 from __future__ import annotations
@@ -30,9 +29,8 @@ _PALETTE, _MOST_PROFILE, _UNIT = 3, 1 << 24, 100_000
 def with_color_chunks(header: Any, path: Path) -> Any:
     """Return the header of a PNG file with EXIF, wherever it stands, and the attributes of color.
 
-    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma";
-    the last two only where no other chunk describes the encoding. Texts of these names are overridden. Raise PhotoError
-    if cICP says that black is not code 0.
+    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma",
+    the last two only where no other chunk describes the encoding. Raise PhotoError for limited range.
     """
     chunks, complete = _chunks(path), oiio.ImageSpec(header)
     complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
