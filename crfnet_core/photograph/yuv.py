@@ -59,10 +59,7 @@ class Coding:
 
     @classmethod
     def from_frame(cls, frame: VideoFrame, *, is_still: bool, codes: Sequence[int] = ()) -> Coding | None:
-        """Return the coding of a decoded frame; None if its matrix or its samples are not read.
-
-        `codes`, matrix and range by the container, override the frame's. An untagged still is BT.601 in full range.
-        """
+        """Return the coding of a decoded frame, by `codes` of its container first; None if its samples are not read."""
         form, bits, lines = frame.format, bit_depth(frame), frame.height
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
             return None

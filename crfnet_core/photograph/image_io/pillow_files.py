@@ -146,10 +146,7 @@ def _bmp(path: Path) -> _Picture:
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
-    """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
-
-    Matrix and range come from the file's box, which FFmpeg puts into the stream, before those of the frame.
-    """
+    """Return the RGB codes of deep AVIF as stored, (H, W, 3), by PyAV; matrix and range are the box's, then the frame's."""
     try:
         import av
     except ImportError:

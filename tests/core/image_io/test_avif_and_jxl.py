@@ -1,4 +1,5 @@
 import struct
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
@@ -7,6 +8,7 @@ from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
+from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
 
 
@@ -85,3 +87,11 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
         with pytest.raises(PhotoError) as caught:
             read(tmp_path / "a.jxl")
         assert caught.value.code == "jxl_linear"
+
+
+def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
+    header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
+    header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
+    with pytest.raises(PhotoError) as caught:
+        checked_bit_depth(Path("a.jxl"), header, "JPEG XL")
+    assert caught.value.code == "jxl_linear"
