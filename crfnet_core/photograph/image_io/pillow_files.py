@@ -146,7 +146,7 @@ def _bmp(path: Path) -> _Picture:
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
-    """Return the RGB codes of deep AVIF as stored, (H, W, 3), by PyAV; matrix and range are the box's, then the frame's."""
+    """Return the RGB codes of deep AVIF as stored, (H, W, 3), by PyAV; the box's matrix and range come first."""
     try:
         import av
     except ImportError:
