@@ -71,9 +71,7 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
 @pytest.mark.parametrize(
     ("mode", "array"),
     [
-        ("RGB", CODES),
-        ("RGBA", with_alpha(CODES)),
-        ("L", CODES[..., 0]),
+        *(("RGB", CODES), ("RGBA", with_alpha(CODES)), ("L", CODES[..., 0])),
         ("LA", np.concatenate([CODES[..., :1], ALPHA], 2)),
     ],
 )

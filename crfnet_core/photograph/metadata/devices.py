@@ -1,8 +1,7 @@
 """Recognize phones, compacts and cameras with interchangeable lenses by the maker and the model in EXIF.
 
-Makers of one kind are known by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
-make several kinds: there the first pattern that fits the model decides, and the last one often fits everything.
-Drones, action cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
+Makers of one kind are known by name; of the others the first pattern that fits the model decides. Drones, action
+cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
 """
 
 from __future__ import annotations

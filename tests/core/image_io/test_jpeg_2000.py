@@ -53,8 +53,7 @@ def test_alpha_is_associated_if_the_file_says_so(tmp_path, kind, is_associated):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        ({"space": 12}, "other_colors"),
-        ({"space": 14}, "other_colors"),
+        *(({"space": space}, "other_colors") for space in (12, 14)),
         ({"boxes": PALETTE}, "palette"),
         ({"components": [(0x87, 1, 1)]}, "coding_not_read"),
         ({"components": [(7, 1, 1), (7, 2, 2), (7, 2, 2)]}, "coding_not_read"),
