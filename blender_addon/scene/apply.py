@@ -38,7 +38,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     remember_settings(datablock, job)
     if not completed.is_applied:
         return "the plate was not changed"
-    look_group.update_look(datablock, completed.estimate.curve, completed.stops)
+    look_group.update_look(context.scene, datablock, completed.estimate.curve, completed.stops)
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)
@@ -78,7 +78,7 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         is_composed=completed.job.output.is_composed and compositor.can_compose(context, datablock),
         timing=compositor.timing_of(context, datablock, completed.frames),
     )
-    compositor.apply_group(shown_tree(context), wanted)
+    compositor.apply_group(context.scene, shown_tree(context), wanted)
     hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
     if wanted.is_composed:
         return f"its nodes linearize it behind the render, whose film is transparent now{hint}"

@@ -17,7 +17,6 @@ import bpy
 
 from . import stored_estimate
 from .color_management import data_space
-from .node_links import LOOK
 from .packed_images import has_own_file, is_painted, pixels_of
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, short_hash
 
@@ -53,15 +52,15 @@ def alpha_in_compositor(plate: Datablock) -> str:
     """
     if plate.source != "MOVIE":
         return alpha_mode(plate) or "STRAIGHT"
-    return "STRAIGHT" if _is_decoded_to_floats(plate) else "PREMUL"
+    return "STRAIGHT" if is_deep(plate) else "PREMUL"
 
 
-def _is_decoded_to_floats(movie: Datablock) -> bool:
-    """Return whether Blender decodes a movie to floats, as above 8 bits."""
-    if isinstance(movie, bpy.types.Image):
-        return movie.is_float
+def is_deep(plate: Datablock) -> bool:
+    """Return whether Blender reads a plate to floats, as above 8 bits."""
+    if isinstance(plate, bpy.types.Image):
+        return plate.is_float
     try:
-        image = bpy.data.images.load(bpy.path.abspath(movie.filepath))  # a clip does not say it
+        image = bpy.data.images.load(bpy.path.abspath(plate.filepath))  # a clip does not say it
     except RuntimeError:  # the file was removed meanwhile
         return False
     is_float = image.is_float
@@ -106,13 +105,6 @@ def pack_with_plates() -> None:
         is_packed = plate.packed_file and plate.library is None and not is_painted(plate)
         if is_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
-
-
-def data_of_another_config() -> list[Datablock]:
-    """Return the code values, and images of looks, that the present config does not take for data: an unknown space."""
-    local = [image for image in (*bpy.data.images, *bpy.data.movieclips) if image.library is None]
-    marked = [image for image in local if image.get(CODE_VALUES_OF) or image.get(LOOK)]
-    return [image for image in marked if not image.colorspace_settings.is_data]
 
 
 def note_files_as_read() -> None:

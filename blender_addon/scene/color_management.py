@@ -34,7 +34,7 @@ def data_space() -> str:
     """
     if "Non-Color" in color_spaces():
         return "Non-Color"
-    return lazy_import.load("crfnet.configs.files").role_name(running_config(), "data")
+    return lazy_import.load("crfnet.configs.sources").role_name(running_config(), "data")
 
 
 def running_config() -> str:

@@ -12,15 +12,17 @@ from .color_management import data_space
 from .look_group import srgb
 from .node_group import linear_rec709, working_space
 from .node_links import LOOK, PLATE
+from .plates import CODE_VALUES_OF
 
 
-def rename_color_spaces(images: list[bpy.types.Image | bpy.types.MovieClip]) -> None:
-    """Take images for data, and give all Convert Colorspace nodes of the add-on the names of the present config.
+def rename_color_spaces() -> None:
+    """Take code values for data, and give all Convert Colorspace nodes of the add-on the names of the present config.
 
-    Raise ConfigError if it lacks a space.
+    Linked ones, too, since a file does not save their names. Raise ConfigError if the config lacks a space.
     """
-    for image in images:
-        image.colorspace_settings.name = data_space()
+    for copy in (*bpy.data.images, *bpy.data.movieclips):
+        if CODE_VALUES_OF in copy and not copy.colorspace_settings.is_data:
+            copy.colorspace_settings.name = data_space()
     linear, working = linear_rec709(), working_space()
     for group in bpy.data.node_groups:
         if PLATE in group:

@@ -10,21 +10,15 @@ from typing import TypeAlias
 import bpy
 
 from .node_building import GAP, IS_BLENDER_5, WIDTH, activate
-from .node_links import (
-    LOOK,
-    PLATE,
-    compositor_trees,
-    holds_group_of,
-    neighbors_behind,
-    nodes_behind,
-    nodes_of,
-    output_of,
-)
+from .node_links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
 from .plates import Datablock, datablock_of_node
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
+
+#: Difference of two exposures, in stops, that single precision makes at most.
+_SAME_EXPOSURE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -118,12 +112,12 @@ def is_switched_off(scene: bpy.types.Scene) -> bool:
     return not IS_BLENDER_5 and not scene.use_nodes
 
 
-def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
+def apply_group(scene: bpy.types.Scene, tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
     """Linearize a plate in a compositor tree: its nodes show its code values, and lead to its node group.
 
     The links from the plate then start at the group. A group that follows already, whatever stands between, is only
-    brought up to date, as all nodes of the group in the file are. If no node shows the plate, one is added, with a
-    viewer. On demand the render is put over it; see `can_compose`.
+    brought up to date, as all nodes of the group are but for those of other scenes: these keep their exposure. If no
+    node shows the plate, one is added, with a viewer. On demand the render is put over it; see `can_compose`.
     """
     sources = _sources(tree, wanted.plate)
     if not sources or wanted.is_composed:
@@ -133,22 +127,27 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
         _show(source, wanted)
         if not _groups_behind(source, wanted.plate):
             activate(_insert(tree, source, wanted.group))
-    for node in (node for other in compositor_trees() for node in other.nodes if holds_group_of(node, wanted.plate)):
+    for node in groups_of(wanted.plate, scene):
         node.node_tree, node.mute = wanted.group, False
         node.inputs["Exposure"].default_value = wanted.exposure
 
 
-def set_exposure(plate: Datablock, exposure: float) -> None:
-    """Set the exposure, in stops, of every node in the file of a plate's node group or Camera Look."""
-    for node in (node for tree in compositor_trees() for node in tree.nodes):
-        held = getattr(node, "node_tree", None)
-        if held is not None and plate in (held.get(PLATE), held.get(LOOK)):
-            node.inputs["Exposure"].default_value = exposure
+def set_exposure(plate: Datablock, scene: bpy.types.Scene, exposure: float) -> None:
+    """Set the exposure, in stops, of all nodes of a plate's node group or Camera Look; not of other scenes."""
+    for node in groups_of(plate, scene, PLATE) + groups_of(plate, scene, LOOK):
+        node.inputs["Exposure"].default_value = exposure
 
 
-def is_linearized(plate: Datablock) -> bool:
-    """Return whether a node of the file shows a plate or its code values, and leads to its node group."""
-    return any(_groups_behind(node, plate) for node in nodes_of(plate))
+def is_linearized(plate: Datablock, scene: bpy.types.Scene) -> bool:
+    """Return whether a node shows a plate or its code values, and leads to its node group; not in another scene."""
+    groups = groups_of(plate, scene)
+    return any(node in groups for source in nodes_of(plate) for node in _groups_behind(source, plate))
+
+
+def has_exposure(plate: Datablock, scene: bpy.types.Scene, exposure: float) -> bool:
+    """Return whether all nodes of a plate's group have an exposure, but for those of other scenes and linked ones."""
+    sockets = [node.inputs["Exposure"] for node in groups_of(plate, scene)]
+    return all(socket.is_linked or abs(socket.default_value - exposure) < _SAME_EXPOSURE for socket in sockets)
 
 
 def _groups_behind(source: bpy.types.Node, plate: Datablock) -> list[bpy.types.Node]:

@@ -16,9 +16,6 @@ IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 #: The distance between a group's node and its neighbors, and its width, in units of the node editor.
 GAP, WIDTH = 60, 320
 
-#: The beginning of the names of nodes that Blender 5.0 replaced by shader nodes.
-SHADER = "Shader" if IS_BLENDER_5 else "Compositor"
-
 #: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")
 
@@ -53,12 +50,23 @@ class NodeGrid:
 
     def math(self, operation: str, column: float, row: float, value: Socket, *numbers: float) -> Socket:
         """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-        node = self.node(f"{SHADER}NodeMath", column, row=row)
+        node = self.node("ShaderNodeMath" if IS_BLENDER_5 else "CompositorNodeMath", column, row=row)
         node.operation = operation
         self.link(value, node.inputs[0])
         for index, number in enumerate(numbers, 1):
             node.inputs[index].default_value = number
         return node.outputs[0]
+
+    def add(self, first: Socket, second: Socket, column: float, row: float) -> Socket:
+        """Return the socket of the sum of two colors, with the alpha of the first."""
+        node = self.node("ShaderNodeMix" if IS_BLENDER_5 else "CompositorNodeMixRGB", column, row=row)
+        if IS_BLENDER_5:
+            node.data_type = "RGBA"
+        node.blend_type, node.inputs[0].default_value = "ADD", 1
+        summands = [socket for socket in node.inputs if socket.type == "RGBA"]
+        for color, socket in zip((first, second), summands, strict=True):
+            self.link(color, socket)
+        return next(socket for socket in node.outputs if socket.type == "RGBA")
 
     def multiply_by_matrix(self, channels: list[Socket], matrix: Float64Array, column: float) -> list[Socket]:
         """Return the sockets of red, green and blue that are multiplied by a matrix, shape (3, 3)."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The inverse response as a compositor node group, whose RGB Curves node has a point at every 8-bit code value.
+"""The inverse response as a compositor node group of RGB Curves nodes: see `curve_nodes`.
 
-Blender evaluates the curve through a table of 256 steps. They run from code value 0 to 256, so the table is exact on 8
-bits, and linear between them on more. Values are clipped to [0, 1], as where files are baked.
+Plates of 8 bits need one, with a step at every code; deeper ones, as many as `curve_nodes.TOLERANCE` takes. Values are
+clipped to [0, 1], as where files are baked.
 """
 
 from __future__ import annotations
@@ -10,22 +10,19 @@ from __future__ import annotations
 import bpy
 import PyOpenColorIO as OCIO
 
-from crfnet.configs.files import role_name
 from crfnet.configs.reference_space import LINEAR_REC709
+from crfnet.configs.sources import role_name
 from crfnet.errors import ConfigError
-from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
 
 from . import stored_estimate
-from .code_values import alpha_in_compositor
+from .code_values import alpha_in_compositor, is_deep
 from .color_management import color_spaces, data_space, running_config
+from .curve_nodes import EIGHT_BITS, Part, add_curves, deep_parts
 from .node_building import CHANNELS, NodeGrid, Socket
 from .node_links import PLATE
 from .plates import Datablock, short_hash
-
-#: The 8-bit code value of white.
-WHITE = 255
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
@@ -41,7 +38,8 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
     group.nodes.clear()
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
-    _add_nodes(group, curve, source, stored_estimate.matrix(plate), alpha_in_compositor(plate))
+    parts = deep_parts(curve) if is_deep(plate) else [EIGHT_BITS]
+    _add_nodes(group, curve, parts, source, stored_estimate.matrix(plate), alpha_in_compositor(plate))
     return group
 
 
@@ -87,7 +85,12 @@ def made_for(plate: Datablock, mark: str = PLATE) -> bpy.types.NodeTree | None:
 
 
 def _add_nodes(
-    group: bpy.types.NodeTree, curve: ResponseCurve, source: str, matrix: Float64Array | None, alpha_mode: str
+    group: bpy.types.NodeTree,
+    curve: ResponseCurve,
+    parts: list[Part],
+    source: str,
+    matrix: Float64Array | None,
+    alpha_mode: str,
 ) -> None:
     """Add the nodes: the curve, exposure, multiplication by alpha, conversion to the working space.
 
@@ -97,13 +100,13 @@ def _add_nodes(
     "Premultiplied", and not multiplied by one that is "Channel Packed"; if it is "None", alpha is 1.
     """
     grid = NodeGrid(group)
-    start, curves = grid.node("NodeGroupInput", 0), grid.node("CompositorNodeCurveRGB", 2)
-    light = start.outputs["Image"]
-    grid.link(grid.divide_by_alpha(light, 1) if alpha_mode == "PREMUL" else light, curves.inputs["Image"])
-    _draw_inverse(curves.mapping, curve)
-    light = curves.outputs[0]
+    start = grid.node("NodeGroupInput", 0)
+    codes = start.outputs["Image"]
+    if alpha_mode == "PREMUL":
+        codes = grid.divide_by_alpha(codes, 1)
+    light = add_curves(grid, codes, curve.inverse, parts, 2)
     if matrix is not None or alpha_mode == "NONE":
-        light = _by_channel(grid, light, matrix, has_alpha=alpha_mode != "NONE")
+        light = by_channel(grid, light, matrix, 3, has_alpha=alpha_mode != "NONE")
     exposed, end = grid.node("CompositorNodeExposure", 8), grid.node("NodeGroupOutput", 11)
     grid.link(light, exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
@@ -113,30 +116,17 @@ def _add_nodes(
     grid.link(grid.convert_color_space(source, working_space(), light, 10), end.inputs["Image"])
 
 
-def _draw_inverse(mapping: bpy.types.CurveMapping, curve: ResponseCurve) -> None:
-    """Draw the inverse response as the curve of all channels, whose own curves stay straight."""
-    last = (WHITE + 1) / WHITE
-    mapping.use_clip, mapping.extend = False, "HORIZONTAL"
-    for channel in mapping.curves:
-        channel.points[-1].location = (last, last)  # they, too, have tables, by whose steps the curve is evaluated
-    points = mapping.curves[3].points
-    points[-1].location = (last, 1)
-    for code, light in enumerate(inverse_response_lut(curve, length=WHITE + 1).values[1:], 1):
-        points.new(code / WHITE, light)
-    for point in points:
-        point.handle_type = "VECTOR"
-    mapping.update()
-
-
-def _by_channel(grid: NodeGrid, light: Socket, matrix: Float64Array | None, *, has_alpha: bool) -> Socket:
+def by_channel(
+    grid: NodeGrid, light: Socket, matrix: Float64Array | None, column: float, *, has_alpha: bool = True
+) -> Socket:
     """Return the socket of light whose primaries a matrix, shape (3, 3), converts, and whose alpha is 1 on demand."""
-    split, join = grid.node("CompositorNodeSeparateColor", 3), grid.node("CompositorNodeCombineColor", 7)
+    split, join = grid.node("CompositorNodeSeparateColor", column), grid.node("CompositorNodeCombineColor", column + 4)
     grid.link(light, split.inputs[0])
     if has_alpha:
         grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     channels = [split.outputs[channel] for channel in CHANNELS]
     if matrix is not None:
-        channels = grid.multiply_by_matrix(channels, matrix, 4)
+        channels = grid.multiply_by_matrix(channels, matrix, column + 1)
     for channel, socket in zip(CHANNELS, channels, strict=True):
         grid.link(socket, join.inputs[channel])
     return join.outputs[0]

@@ -13,7 +13,7 @@ from .plates import Datablock, datablock_of_node, shown_by_node
 #: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"
 
-#: The same of the node groups "Camera Look" and their images.
+#: The same of the node groups "Camera Look".
 LOOK = "camera_response_look_of"
 
 
@@ -56,15 +56,45 @@ def compositor_trees() -> Iterator[bpy.types.NodeTree]:
         yield from (scene.node_tree for scene in bpy.data.scenes if scene.node_tree is not None)
 
 
+def trees_here(scene: bpy.types.Scene) -> list[bpy.types.NodeTree]:
+    """Return the compositor trees of the file, but for those of other scenes only, such as of a full copy of this."""
+    of_others = {tree for other in bpy.data.scenes if other != scene for tree in _trees_in(_tree_of(other))}
+    apart = of_others.difference(_trees_in(_tree_of(scene)))
+    return [tree for tree in compositor_trees() if tree not in apart]
+
+
+def _tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree | None:
+    """Return the compositor tree of a scene, or None."""
+    return scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group
+
+
+def _trees_in(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.NodeTree]:
+    """Yield a tree, unless it is None, and the node groups in it."""
+    if tree is not None:
+        yield tree
+        for inner in {node.node_tree for node in tree.nodes if node.type == "GROUP"}:
+            yield from _trees_in(inner)
+
+
+def has_groups() -> bool:
+    """Return whether the file has node groups of the add-on."""
+    return any(PLATE in group or LOOK in group for group in bpy.data.node_groups)
+
+
 def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
     """Yield the compositor nodes of the file that show a plate or its code values."""
     yield from (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate)
 
 
-def holds_group_of(node: bpy.types.Node, plate: Datablock) -> bool:
-    """Return whether a node holds a plate's node group, muted or not."""
+def groups_of(plate: Datablock, scene: bpy.types.Scene, mark: str = PLATE) -> list[bpy.types.Node]:
+    """Return the nodes that hold a plate's node group, or look, and are not those of other scenes only."""
+    return [node for tree in trees_here(scene) for node in tree.nodes if holds_group_of(node, plate, mark)]
+
+
+def holds_group_of(node: bpy.types.Node, plate: Datablock, mark: str = PLATE) -> bool:
+    """Return whether a node holds a plate's node group, or look, muted or not."""
     tree = getattr(node, "node_tree", None)
-    return tree is not None and tree.get(PLATE) == plate
+    return tree is not None and tree.get(mark) == plate
 
 
 def linearized_twice(plate: Datablock) -> str:

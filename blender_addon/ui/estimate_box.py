@@ -20,7 +20,6 @@ _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are reg
 
 #: Each verdict in a word or two, with its icon and its meaning.
 VERDICTS = {
-    "good": ("Good", "CHECKMARK", ""),
     "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
     stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
 }

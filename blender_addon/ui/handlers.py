@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from .. import lazy_import
-from ..scene import code_values
+from ..scene import code_values, node_links
 from ..work.errors import expected_errors
 from .image_editor import comparison
 
@@ -32,9 +32,9 @@ def check_opened_file(*_arguments: Any) -> None:
     Blender has just read these.
     """
     comparison.end_all()
-    if images := code_values.data_of_another_config():
+    if node_links.has_groups():
         try:
-            lazy_import.load(".scene.color_space_names").rename_color_spaces(images)
+            lazy_import.load(".scene.color_space_names").rename_color_spaces()
         except expected_errors() as problem:
             sys.stderr.write(f"Camera response: {problem}\n")
     code_values.note_files_as_read()

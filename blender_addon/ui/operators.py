@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..work.run import CompletedJob
 
 #: The report on an estimate that is not applied because it is not to be trusted.
-WITHHELD = "not applied; to use it all the same, press Apply Anyway"
+WITHHELD = "not applied; to use it all the same, press Apply Anyway (anyway=True)"
 
 
 class PlateOperator(ChosenPlate, PlateChoices):
@@ -50,7 +50,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
         """Run the job, and return when it is done."""
         try:
             job = self._gather_job(context)
-            return self._apply(context, lazy_import.load(".work.run").run(job))
+            return self._apply(context, lazy_import.load(".work.run").run(job), withheld="ERROR")
         except expected_errors() as problem:
             return failed(self, problem)
 
@@ -101,8 +101,8 @@ class PlateOperator(ChosenPlate, PlateChoices):
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
         )
 
-    def _apply(self, context: bpy.types.Context, completed: "CompletedJob") -> set[str]:
-        """Apply a completed job to the scene, and report what was done."""
+    def _apply(self, context: bpy.types.Context, completed: "CompletedJob", withheld: str = "WARNING") -> set[str]:
+        """Apply a completed job to the scene, and report what was done; `withheld` is the kind of report if nothing."""
         comparison.end_all()
         done = lazy_import.load(".scene.apply").apply(context, completed)
         if completed.is_applied:
@@ -112,7 +112,8 @@ class PlateOperator(ChosenPlate, PlateChoices):
             failed(self, completed.problem)
             return {"FINISHED"}
         message = report_line(completed.job.plate.name, completed.estimate, WITHHELD if completed.is_withheld else done)
-        self.report({"WARNING"} if completed.is_doubtful else {"INFO"}, message)
+        kind = withheld if completed.is_withheld else "WARNING" if completed.is_doubtful else "INFO"
+        self.report({kind}, message)
         return {"FINISHED"}
 
 

@@ -68,7 +68,7 @@ def _expose_nodes(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
     stops = stored_estimate.exposure(plate) + settings.exposure - applied["exposure"]
     stored_estimate.set_entry(plate, stored_estimate.EXPOSURE, stops)
     applied["exposure"] = settings.exposure
-    compositor.set_exposure(plate, stops)
+    compositor.set_exposure(plate, bpy.context.scene, stops)
 
 
 class PlateChoices:
@@ -171,16 +171,22 @@ def remember_applied(datablock: bpy.types.ID) -> None:
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:
-    """Return whether the estimate of a plate is applied with its present settings; its nodes must still be there."""
+    """Return whether the estimate of a plate is applied with its present settings; in this scene, if as nodes."""
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock)
+    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock, bpy.context.scene)
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:
-    """Return whether settings of a plate with an estimate have been changed since they were applied."""
+    """Return whether a plate's settings are others than those applied last, or the exposure of its nodes is another.
+
+    A full copy of a scene has nodes, and so an exposure, of its own.
+    """
     applied = datablock[stored_estimate.KEY].get(APPLIED)
-    return applied is not None and applied.to_dict() != _comparable(datablock.camera_response_settings)
+    if applied is None or applied.to_dict() != _comparable(datablock.camera_response_settings):
+        return applied is not None
+    exposure = stored_estimate.exposure(datablock)
+    return not compositor.has_exposure(datablock, bpy.context.scene, exposure)
 
 
 def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:

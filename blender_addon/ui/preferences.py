@@ -53,6 +53,8 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         layout.prop(self, "apply_as")
         layout.prop(self, "folder", placeholder="The plate's own folder")
         layout.prop(self, "model", placeholder="The add-on's own model")
+        button = layout.operator("wm.path_open", text="Documentation", icon="HELP")
+        button.filepath = str(Path(__file__).parents[1] / "README.md")
 
 
 def preferences() -> CRF_AddonPreferences:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from crfnet.configs.files import load_config
+from crfnet.configs.sources import find_config
 from crfnet.errors import ConfigError
 from crfnet_core.photograph.image_io import read_metadata
 
@@ -63,7 +63,7 @@ def is_log_or_linear(color_space: str, encoding: str = "") -> bool:
 def _encoding(color_space: str, config: str) -> str:
     """Return the encoding of a color space in a config; empty if the config gives none."""
     try:
-        space = load_config(config).getColorSpace(color_space)
+        space = find_config(config).config.getColorSpace(color_space)
     except ConfigError:
         return ""
     return "" if space is None or space.isData() else space.getEncoding() or ""

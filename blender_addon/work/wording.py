@@ -44,7 +44,6 @@ NARROW_RANGE = "narrow_range"
 
 #: Each verdict as a sentence about the response, for one-line reports.
 _SENTENCES = {
-    "good": "the response is good",
     "usable": "the response is usable",
     "do not trust": "the response is not to be trusted",
 }
@@ -91,7 +90,7 @@ def _sentence(text: str) -> str:
 
 
 def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
-    """Return whether an estimate is little more than the mean of cameras, though its verdict is good or usable."""
+    """Return whether an estimate is little more than the mean of cameras, though its verdict is usable."""
     return verdict != "do not trust" and NARROW_RANGE in codes
 
 

@@ -1,7 +1,4 @@
-"""Read camera raw: the light of the sensor as it stands in the file, and the camera's own JPEG in it.
-
-It needs rawpy (LibRaw), an optional dependency.
-"""
+"""Read camera raw with rawpy (LibRaw): the light of the sensor as it is stored, and the camera's own JPEG in it."""
 
 from __future__ import annotations
 
@@ -19,11 +16,8 @@ from crfnet_core.types import BoolArray, Float32Array, Float64Array
 #: the largest value for it to be the end of the range.
 SATURATED, PILE = 0.985, 1e-4
 
-#: Tag of DNG 1.2: PreviewApplicationName.
-_PREVIEW_PROGRAM = 50966
-
-#: Photosites along both sides of a Bayer pattern.
-_BAYER = (2, 2)
+#: Tag of DNG 1.2: PreviewApplicationName. And the photosites along both sides of a Bayer pattern.
+_PREVIEW_PROGRAM, _BAYER = 50966, (2, 2)
 
 
 @dataclass(frozen=True, eq=False)

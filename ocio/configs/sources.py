@@ -1,7 +1,5 @@
 """The config that a user names: a file, a name of OpenColorIO's built-in configs, $OCIO, or an installed Blender."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from dataclasses import dataclass
@@ -55,6 +53,15 @@ def find_config(name: str) -> ConfigSource:
     if path.suffix.lower() == ".ocioz":
         raise ConfigError("config_archive", path=path)
     return ConfigSource(load_config(path), str(path), path)
+
+
+def role_name(config: str, role: str) -> str:
+    """Return the name of the color space that has a role in a config of `find_config`; a ConfigError if none has."""
+    source = find_config(config)
+    space = source.config.getColorSpace(role)
+    if space is None:
+        raise ConfigError("role_absent", path=source.name, role=role)
+    return str(space.getName())
 
 
 def built_in_names() -> tuple[str, ...]:

@@ -20,14 +20,11 @@ from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
 
-#: Names of the one channel of a gray picture; any other is depth, a mask or other data.
-GRAY = ("Y", "R")
+#: Names of the one channel of a gray picture, and values of colorInteropID that say nothing of an encoding.
+GRAY, UNTAGGED = ("Y", "R"), ("", "unknown", "data")
 
 #: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
 MOST_BRIGHTNESS = 2
-
-#: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
-UNTAGGED = ("", "unknown", "data")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +87,8 @@ def frame_path(sequence: FrameSource, position: int) -> Path:
 def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | None = None) -> EncodedFrame:
     """Return the encoded samples of one frame: of a file that `read_photo` can read, or of OpenEXR with encoded values.
 
-    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated` says
-    whether the samples are multiplied by alpha, and so are divided by it; by default as the file says. Raise a
-    PhotoError or PlateError if the file is damaged, too large, of another format, or may be scene-linear already.
+    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated`: whether
+    the samples are divided by alpha, by default as the file says. Raises as `read_photo` does, or a PlateError.
     """
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
@@ -118,8 +114,7 @@ def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
 @contextmanager
 def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     """Yield an OpenEXR file as an OpenImageIO.ImageInput, or refuse it."""
-    source = oiio.ImageInput.open(str(path))
-    problem = oiio_message()
+    source, problem = oiio.ImageInput.open(str(path)), oiio_message()
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
@@ -181,7 +176,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
     names = set(header.channelnames)
-    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBYA"}
     if (
         header.deep
         or not kinds <= {"half", "float"}

@@ -50,13 +50,12 @@ def test_do_not_trust_is_not_applied_without_the_users_word(untrusted, tmp_path,
     folder = tmp_path / "out"
     before = scene_state()
     choices = {"image": untrusted.name, "apply": mode, "folder": str(folder)}
-    assert bpy.ops.crf.estimate_response(**choices) == {"FINISHED"}
-    assert scene_state() == before
-    assert not folder.exists()
-    assert "camera_response" in untrusted
-    with pytest.raises(RuntimeError, match=r"the response is not to be trusted; .* press Apply Anyway"):
-        bpy.ops.crf.apply_response(**choices)
-    assert scene_state() == before
+    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+        with pytest.raises(RuntimeError, match=r"not to be trusted; .* press Apply Anyway \(anyway=True\)"):
+            operator(**choices)
+        assert scene_state() == before
+        assert not folder.exists()
+        assert (untrusted.camera_response.verdict, untrusted.camera_response.is_applied) == ("do not trust", False)
     assert bpy.ops.crf.apply_response(**choices, anyway=True) == {"FINISHED"}
     assert folder.exists() or scene_state() != before
 

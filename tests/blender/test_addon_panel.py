@@ -30,7 +30,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
 
 @pytest.mark.parametrize(
     ("verdict", "word", "icon"),
-    [("good", "Good", "CHECKMARK"), ("usable", "Usable", "INFO"), ("do not trust", "Do not trust", "ERROR")],
+    [("usable", "Usable", "INFO"), ("do not trust", "Do not trust", "ERROR")],
 )
 def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdict, word, icon):
     image["camera_response"]["verdict"] = verdict
@@ -45,7 +45,7 @@ def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdic
     assert ("The plate was not changed." in words) == is_doubted
     assert ("Take another." in words) == is_doubted
     assert ("Expected error 0." in words) == (not is_doubted)  # it would reassure
-    assert ("Look at the linear plate before you rely on it." in words) == (verdict == "usable")
+    assert ("Look at the linear plate before you rely on it." in words) == (not is_doubted)
     assert [entry[2] for entry in drawn if entry[:2] == ("set", "alert")] == [is_doubted]  # and never of the button
     if is_doubted:
         bpy.ops.crf.apply_response(image=image.name, anyway=True)
@@ -64,7 +64,7 @@ def test_every_line_fits_the_sidebar(image, in_editor):
 
 def test_a_narrow_range_is_no_more_than_the_mean_of_cameras(image, in_editor):
     image["camera_response"]["notices"] = '[["narrow_range", {}]]'
-    for verdict in ("good", "usable", "do not trust"):
+    for verdict in ("usable", "do not trust"):
         image["camera_response"]["verdict"] = verdict
         first, *others = labels(drawn_in(image, in_editor))
         assert first == ("Do not trust" if verdict == "do not trust" else "Mean of cameras")

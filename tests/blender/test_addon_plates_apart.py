@@ -10,6 +10,9 @@ from .helpers import estimate as run
 
 CODES = 1e-5
 
+#: The same on deeper ones: 3e-4 stop.
+DEEP = 2e-4
+
 
 @pytest.fixture
 def tree(tree):
@@ -149,7 +152,7 @@ class TestNothingIsLinearizedTwice:
             group=next(each for each in bpy.data.node_groups if "Response" in each.name),
             exposure=1,
         )
-        compositor.apply_group(edited, wanted)
+        compositor.apply_group(bpy.context.scene, edited, wanted)
         assert len(groups(edited)) == expected
 
 
@@ -170,7 +173,8 @@ class TestTheRestStaysAsItIs:
         image.colorspace_settings.name = space
         run(image, "NODES")
         expected = estimate(path).curve.inverse(codes / 255)
-        assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
+        limit = CODES if depth == "uint8" else DEEP
+        assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < limit
         assert image.colorspace_settings.name == space
 
     def test_the_copy_stands_behind_its_plate(self, image, tree):

@@ -2,9 +2,17 @@
 
 import pytest
 
-from .helpers import apply, bpy, compositor_tree, groups
+from .helpers import apply, bpy, compositor_tree, drawn_in, groups, labels
 
 pytestmark = pytest.mark.usefixtures("estimated")
+
+
+APPLIED, CHANGED = "Applied with these settings.", "Changed settings count once they are applied."
+
+
+def words_on(image, in_editor):
+    """What the panel writes, in one line."""
+    return " ".join(labels(drawn_in(image, in_editor)))
 
 
 def twice(image):
@@ -24,15 +32,36 @@ def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
     assert "two node groups follow" in twice(image)
 
 
-def test_two_scenes_are_linearized_once_each(image, tree):
+def exposures(scene):
+    return [node.inputs["Exposure"].default_value for node in groups(compositor_tree(scene))]
+
+
+@pytest.mark.parametrize("kind", ["NEW", "FULL_COPY"])
+def test_two_scenes_are_linearized_once_each_and_keep_exposures_of_their_own(image, in_editor, kind):
+    window = bpy.context.window_manager.windows[0]
+    first = window.scene
     apply(image)
-    other = bpy.data.scenes.new("Other")
-    with bpy.context.temp_override(scene=other):
-        apply(image)
-    assert twice(image) == ""
+    with bpy.context.temp_override(window=window):
+        bpy.ops.scene.new(type=kind)
+    other = window.scene
+    assert (APPLIED in words_on(image, in_editor)) == (kind == "FULL_COPY")
     apply(image, exposure=1)
-    nodes = [groups(shown) for shown in (tree, compositor_tree(other))]
-    assert [[node.inputs["Exposure"].default_value for node in each] for each in nodes] == [[1], [1]]
+    assert twice(image) == ""
+    assert (exposures(first), exposures(other)) == ([0], [1])
+    assert APPLIED in words_on(image, in_editor)
+    window.scene = first
+    assert CHANGED in words_on(image, in_editor)
+
+
+def test_the_look_of_another_scene_keeps_its_exposure(image):
+    window = bpy.context.window_manager.windows[0]
+    apply(image)
+    bpy.ops.crf.add_look(image=image.name)
+    first = window.scene
+    with bpy.context.temp_override(window=window):
+        bpy.ops.scene.new(type="FULL_COPY")
+    apply(image, exposure=1)
+    assert (exposures(first), exposures(window.scene)) == ([0, 0], [1, 1])
 
 
 def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):

@@ -20,12 +20,8 @@ def origin(**fields):
 @pytest.mark.parametrize(
     ("width", "height", "shape"),
     [
-        (3504, 2336, "3:2"),
-        (4000, 3000, "4:3"),
-        (4000, 2252, "16:9"),
-        (4032, 1960, "2:1"),
-        (2538, 1080, "other"),
-        (0, 0, "other"),
+        *((3504, 2336, "3:2"), (4000, 3000, "4:3"), (4000, 2252, "16:9"), (4032, 1960, "2:1")),
+        *((2538, 1080, "other"), (0, 0, "other")),
     ],
 )
 def test_shape_of_the_picture(width, height, shape):

@@ -4,8 +4,9 @@ reading          any file that is read, to a `Photo` or to `CodeValues`
 file_kinds       formats by their first bytes; refuses camera raw, linear files and palettes
 header_checks    size, depth and colors in a header; texts without control characters
 jpeg_files       JPEG: checks before decoding, and the standard image of a file with a gain map
+jp2_files        JPEG 2000: codings that OpenImageIO misreads, and associated alpha
 png_files        PNG: the chunks of color
-heif             HEIC and AVIF, which OpenImageIO's wheel cannot read
+pillow_files     HEIC, AVIF and BMP, which OpenImageIO's wheel does not read, or not all of
 problems         the errors of files that cannot be decoded
 """
 

@@ -39,10 +39,7 @@ class JpegFile:
 
 
 def checked_jpeg(path: Path) -> JpegFile:
-    """Refuse a JPEG that OpenImageIO would accept: a huge frame, which opening allocates, and a missing end.
-
-    Where the rest of a file is zeros (a failed download or recovery) the decoder paints gray and does not complain.
-    """
+    """Refuse a JPEG that OpenImageIO would accept: a huge frame, which opening allocates, and a missing end."""
     warnings, scan, before, between = set(), 0, 2, 0
     with _mapped(path) as content:
         for count, (marker, stray, scan, end) in enumerate(_segments(content)):
@@ -60,11 +57,7 @@ def checked_jpeg(path: Path) -> JpegFile:
 
 
 def base_image(path: Path) -> bytes:
-    """Return the standard image of an Ultra HDR JPEG, for which OpenImageIO with libultrahdr gives linear half floats.
-
-    The file holds two JPEG pictures; without the second, the gain map, it is an ordinary one. Raise PhotoError if it
-    holds one picture only.
-    """
+    """Return the first picture of an Ultra HDR JPEG, of which OpenImageIO makes linear half floats with the second."""
     with _mapped(path) as content:
         scan = max((begin for _, _, begin, _ in _segments(content)), default=0)
         base = content[: content.find(_END_OF_IMAGE, scan) + 2]

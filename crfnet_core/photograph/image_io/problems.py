@@ -24,10 +24,7 @@ def damaged(path: Path, kind: str, problem: str) -> PhotoError:
 
 
 def oiio_message(source: Any = oiio) -> str:
-    """Return OpenImageIO's last message, of an open file or else of the library, without control characters.
-
-    Messages may quote bytes of a damaged file that are not text, at which the Python binding raises.
-    """
+    """Return OpenImageIO's last message, of an open file or else of the library, on plain lines."""
     try:
         problem = str(source.geterror())
     except UnicodeDecodeError as failure:

@@ -109,10 +109,7 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device by EXIF Make and Model; UNKNOWN where neither shows it.
-
-    Where the make is absent, the model may begin with it ("NIKON D90").
-    """
+    """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN."""
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker
@@ -120,9 +117,8 @@ def device_of(make: str, model: str) -> Device:
         if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
             return device
     name = next((name for name in PATTERNS if maker.startswith(name)), "")
-    plain = re.sub(
-        rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*", "", model.casefold().strip()
-    )  # without the maker in front
+    front = rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*"  # the maker
+    plain = re.sub(front, "", model.casefold().strip())
     return next((device for pattern, device in PATTERNS.get(name, ()) if re.match(pattern, plain)), _UNKNOWN)
 
 

@@ -54,10 +54,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
 
 
 def ijg_quality(luma: Table, chroma: Table = ()) -> int | None:
-    """Return the quality, 1 to 100, at which the IJG library writes just these tables; None if it never does.
-
-    Camera makers have tables of their own. Those of quality 98 and more are nearly all ones and prove nothing.
-    """
+    """Return the quality, 1 to 100, at which the IJG library writes just these tables; None if it never does."""
     quality = _ijg_qualities().get(luma)
     if quality is None or (chroma and chroma != scaled_table(ANNEX_K_CHROMA, quality)):
         return None

@@ -3,7 +3,7 @@
 import pytest
 
 from crfnet.configs.portable import portable_config
-from crfnet.configs.sources import built_in_names, find_config
+from crfnet.configs.sources import built_in_names, find_config, role_name
 from crfnet.errors import ConfigError
 from tests.helpers.refusals import refused
 
@@ -100,3 +100,10 @@ def test_anything_else_is_refused(name, code, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with refused(ConfigError, code):
         find_config(name)
+
+
+def test_a_role_of_a_file_or_a_built_in_config_has_a_name_or_is_refused(config):
+    assert role_name(str(config), "scene_linear") == "Linear Rec.709"
+    assert role_name("ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "scene_linear") == "ACEScg"
+    with refused(ConfigError, "role_absent"):
+        role_name(str(config), "nonsense")

@@ -15,17 +15,6 @@ from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr
 WIDE = np.random.default_rng(1).integers(0, 65536, (70, 90, 3)).astype(np.uint16)
 
 
-def test_8_bit_codes_become_the_entries_of_the_lut(tmp_path, out):
-    codes = np.arange(256, dtype=np.uint8).reshape(16, 16, 1).repeat(3, axis=2)
-    report = linearize(write_image(tmp_path / "a.png", codes), out / "a.exr", LUT, depth="float")
-    assert (report.written, report.skipped, report.missing) == ((out / "a.exr",), (), ())
-    pixels, spec = read_exr(out / "a.exr")
-    assert str(spec.format) == "float"
-    assert spec.channelnames == ("R", "G", "B")
-    np.testing.assert_array_equal(pixels, LUT.apply(codes / 255).astype(np.float32))
-    np.testing.assert_allclose(pixels, (codes / 255) ** 2.2, atol=1e-3)
-
-
 @pytest.mark.parametrize("stops", [-2, 1, 0.5])
 def test_the_exposure_is_in_stops(tmp_path, out, stops):
     path = write_image(tmp_path / "a.png", SMALL[..., :3])

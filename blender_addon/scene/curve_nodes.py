@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Functions of colors as RGB Curves nodes, each a table of 256 steps from its Black Level to its White Level.
+
+Where one table is too coarse, several nodes stand side by side and are added: each is 0 below its part of the inputs
+and constant above it. The curves of the channels stay straight, so that on the GPU, where tables hold half floats, no
+second table adds its error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
+
+import bpy
+import numpy as np
+
+from .node_building import NodeGrid, Socket
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseCurve
+    from crfnet_core.types import Float64Array
+
+#: The steps of the table that Blender makes of a curve; between them it is linear.
+STEPS = 256
+
+#: The largest codes of 8 and 16 bits; codes of 16 bits up to DARK are too dark for a limit in stops.
+WHITE, DEEP_WHITE, DARK = 255, 65535, 7 * 257
+
+#: Largest error of the curves of a deep plate, in stops: with that of half floats on the GPU, it stays below 0.001.
+TOLERANCE = 3e-4
+
+#: The lengths that are tried for a part.
+_TRIED = 64
+
+#: The start and the end of the inputs of one node.
+Part: TypeAlias = tuple[float, float]
+
+#: The part of a plate of 8 bits, whose table has a step at every code.
+EIGHT_BITS: Part = (0, (WHITE + 1) / WHITE)
+
+
+def add_curves(
+    grid: NodeGrid, colors: Socket, function: Callable[[Float64Array], Float64Array], parts: list[Part], column: float
+) -> Socket:
+    """Return the socket of a function of colors that is 0 at 0, drawn in parts that follow each other from 0 on."""
+    total = None
+    for row, (start, end) in enumerate(parts):
+        node = grid.node("CompositorNodeCurveRGB", column, row=1.5 * row)
+        grid.link(colors, node.inputs["Image"])
+        for name, level in (("Black Level", start), ("White Level", end)):
+            node.inputs[name].default_value = (level, level, level, 1)
+        values = function(np.linspace(start, end, STEPS + 1))
+        _draw(node.mapping, values - values[0])
+        drawn = node.outputs[0]
+        total = drawn if total is None else grid.add(total, drawn, column + 1, 1.5 * row)
+    return total
+
+
+def deep_parts(curve: ResponseCurve) -> list[Part]:
+    """Return the parts in which an inverse response is within `TOLERANCE` on all codes of 16 bits above `DARK`."""
+    codes = np.arange(DEEP_WHITE + 1)
+    light = curve.inverse(codes / DEEP_WHITE)
+
+    def is_close(start: int, end: int) -> bool:
+        steps, inside = np.linspace(start, end, STEPS + 1), codes[max(start, DARK + 1) : end + 1]
+        drawn = np.interp(inside, steps, np.interp(steps, codes, light))
+        return bool((abs(np.log2(drawn / light[inside])) <= TOLERANCE).all())
+
+    ends = [0]
+    while ends[-1] < DEEP_WHITE:
+        start = ends[-1]
+        lengths = np.geomspace(max(DEEP_WHITE - start, STEPS), STEPS, _TRIED).round().astype(int).tolist()
+        ends.append(start + next(length for length in lengths if is_close(start, start + length)))  # the last is exact
+    return [(start / DEEP_WHITE, end / DEEP_WHITE) for start, end in pairwise(ends)]
+
+
+def _draw(mapping: bpy.types.CurveMapping, values: Float64Array) -> None:
+    """Draw values at the steps of the table as the curve of all channels; it is constant beyond."""
+    mapping.use_clip, mapping.extend = False, "HORIZONTAL"
+    points = mapping.curves[3].points
+    points[0].location, points[-1].location = (0, values[0]), (1, values[-1])
+    for step in range(1, STEPS):
+        points.new(step / STEPS, values[step])
+    for point in points:
+        point.handle_type = "VECTOR"
+    mapping.update()
