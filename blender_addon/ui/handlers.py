@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Handlers for opening and saving a .blend file, and for undo.
+"""Handlers for opening, importing from and saving a .blend file, and for undo.
 
 Before a file is saved and around undo, editors that show a linear plate for comparison go back to the plate, so that it
 is never saved. The code values of plates that were packed are packed, too.
@@ -51,6 +51,7 @@ def pack_code_values(*_arguments: Any) -> None:
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("load_post", end_comparisons),
     ("load_post", rename_color_spaces),
+    ("blend_import_post", rename_color_spaces),
     ("load_post", note_files_as_read),
     ("save_pre", pack_code_values),
     ("save_pre", end_comparisons),
