@@ -62,19 +62,6 @@ def test_a_plate_that_was_linked_and_made_local_gets_a_copy_of_its_own(image, tm
     assert copy["camera_response_code_values_of"] == plate
 
 
-def test_plates_of_one_name_in_two_files_share_no_name_of_copy_or_group(addon, tmp_path, codes):
-    """Where nodes are copied from one file to the other, Blender takes data of one name for the same."""
-    names = []
-    for folder in ("a", "b"):
-        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        (tmp_path / folder).mkdir()
-        plate = bpy.data.images.load(str(write_image(tmp_path / folder / "IMG_0001.png", codes)))
-        run(plate, "NODES")
-        made = [each for each in bpy.data.node_groups if "Response" in each.name]
-        names += [code_values_of(plate).name, *(each.name for each in made)]
-    assert len(set(names)) == len(names) == 4
-
-
 @pytest.mark.skipif(not IS_BLENDER_5, reason="before, nodes pasted into another file lose their image and their group")
 def test_nodes_pasted_beside_a_plate_of_the_same_name_keep_picture_and_response(
     addon, in_editor, tmp_path, codes, composited
