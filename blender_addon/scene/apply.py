@@ -14,7 +14,8 @@ from ..work.wording import shortened
 from ..work.writers import Baked, Exported
 from . import compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
-from .plates import BAKED_FROM, Datablock, alpha_mode, datablock_of_plate
+from .node_links import LOOK, PLATE
+from .plates import BAKED_FROM, CODE_VALUES_OF, Datablock, alpha_mode, datablock_of_plate, release_pasted
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -24,6 +25,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     file, or the config lacks a color space that the nodes need.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
+    release_pasted(PLATE, LOOK, CODE_VALUES_OF)
     if completed.is_applied and completed.files is None:
         node_group.check_config()
         shown_tree(context)  # refuses one that is linked

@@ -18,7 +18,7 @@ import bpy
 from . import stored_estimate
 from .color_management import data_space
 from .packed_images import has_own_file, is_painted, pixels_of
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, short_hash
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, mark, short_hash
 
 #: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -38,7 +38,7 @@ def code_values(plate: Datablock) -> Datablock:
         if earlier is not None:
             earlier.user_remap(copy)
             _collection(plate).remove(earlier)
-        copy[CODE_VALUES_OF] = plate
+        mark(copy, CODE_VALUES_OF, plate)
     copy.name = _name_behind(plate)
     copy[_READ] = file_state(plate)
     return copy
@@ -101,7 +101,7 @@ def pack_with_plates() -> None:
 
     Linked copies are left alone.
     """
-    for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None}:
+    for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None, ""}:
         is_packed = plate.packed_file and plate.library is None and not is_painted(plate)
         if is_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
@@ -110,7 +110,7 @@ def pack_with_plates() -> None:
 def note_files_as_read() -> None:
     """Note, when a scene has been opened, that the copies show the files as they are now: Blender reads them anew."""
     for copy in (*bpy.data.images, *bpy.data.movieclips):
-        if _READ in copy and (plate := copy.get(CODE_VALUES_OF)) is not None:
+        if _READ in copy and (plate := copy.get(CODE_VALUES_OF)):
             copy[_READ] = file_state(plate)
 
 

@@ -22,7 +22,7 @@ from .color_management import color_spaces, data_space, running_config
 from .curve_nodes import EIGHT_BITS, Part, add_curves, deep_parts
 from .node_building import CHANNELS, NodeGrid, Socket
 from .node_links import PLATE
-from .plates import Datablock, short_hash
+from .plates import Datablock, mark, short_hash
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
@@ -63,14 +63,14 @@ def working_space() -> str:
     return "scene_linear" if "scene_linear" in kinds else role_name(running_config(), OCIO.ROLE_SCENE_LINEAR)
 
 
-def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.types.NodeTree:
+def new_group(plate: Datablock, title: str, name: str, exposure: str) -> bpy.types.NodeTree:
     """Return a plate's new node group, with sockets and without nodes.
 
-    A short hash of the plate ends its name. The custom property `mark`, whose value is the plate, finds it again.
+    A short hash of the plate ends its name. The custom property of a name, whose value is the plate, finds it again.
     `exposure` is the description of the Exposure socket.
     """
     group = bpy.data.node_groups.new(f"{title} {short_hash(plate)}", "CompositorNodeTree")
-    group[mark] = plate
+    mark(group, name, plate)
     group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
     stops = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
@@ -79,9 +79,9 @@ def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.typ
     return group
 
 
-def made_for(plate: Datablock, mark: str = PLATE) -> bpy.types.NodeTree | None:
+def made_for(plate: Datablock, name: str = PLATE) -> bpy.types.NodeTree | None:
     """Return the node group that was made for a plate; not one linked from another file."""
-    return next((group for group in bpy.data.node_groups if group.get(mark) == plate and group.library is None), None)
+    return next((group for group in bpy.data.node_groups if group.get(name) == plate and group.library is None), None)
 
 
 def _add_nodes(
