@@ -28,9 +28,9 @@ def unregister() -> None:
 
 def _registered() -> tuple[ModuleType, ...]:
     """Return the modules with something to register, in order: the settings use the preferences."""
-    from .ui import estimate_box, handlers, operators, panel, plate_settings, preferences
+    from .ui import camera_response, estimate_box, handlers, operators, panel, plate_settings, preferences
     from .ui.image_editor import image_tools
-    from .ui.more import add_look, load_lut, other_plates
+    from .ui.more import add_look, load_lut, other_plates, standard_view
 
-    tools = (operators, image_tools, add_look, load_lut, other_plates)
-    return (preferences, plate_settings, *tools, estimate_box, panel, handlers)
+    tools = (operators, image_tools, add_look, load_lut, other_plates, standard_view)
+    return (preferences, plate_settings, camera_response, *tools, estimate_box, panel, handlers)

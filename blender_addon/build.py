@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build the Blender extension, one zip per platform and one for the Blenders of Linux distributions: `make addon`.
 
+The folder of the zips is a repository of extensions, from which Blender installs and updates: it has an `index.json`.
+
 Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so
 the next build needs no network. The same sources give the same bytes: the members of a zip are sorted by name,
 uncompressed, and all of one date; the wheel of `crfnet_core` and `crfnet` is built by the setuptools of wheels.sha256,
@@ -22,41 +24,43 @@ import tomllib
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any, NamedTuple
 from urllib.parse import quote
-
-#: The exit code after a failure.
-FAILED = 2
 
 ADDON = Path(__file__).resolve().parent
 ROOT = ADDON.parent
-MANIFEST = "blender_manifest.toml"
+MANIFEST, INDEX = "blender_manifest.toml", "index.json"
 
-#: Blender's name of each platform, and how the platform tags of its wheels begin and end.
-WHEEL_PLATFORMS = {
-    "linux-x64": ("manylinux", "x86_64"),
-    "macos-arm64": ("macosx", "arm64"),
-    "macos-x64": ("macosx", "x86_64"),
-    "windows-x64": ("win", "amd64"),
+#: The versions of Python in Blender as blender.org builds it, and in all Blenders, such as a distribution's.
+OFFICIAL, ALL = ("cp311", "cp313"), ("cp311", "cp312", "cp313", "cp314")
+
+
+class Zip(NamedTuple):
+    """One of the zips: Blender's name of its platform, which wheels are for it, and who needs it."""
+
+    platform: str
+    tag: str  # a pattern of the platform tags of its wheels
+    pythons: tuple[str, ...]
+    audience: str
+
+
+ZIPS = {
+    "linux-x64": Zip("linux-x64", "manylinux.*x86_64", OFFICIAL, "Linux: Blender 4.5 to 5.2 from blender.org"),
+    "macos-arm64": Zip(
+        "macos-arm64", "macosx.*arm64", OFFICIAL, "Apple silicon, macOS 13 or newer: Blender 4.5 to 5.2"
+    ),
+    "macos-x64": Zip("macos-x64", "macosx.*x86_64", ("cp311",), "Intel Macs, macOS 13 or newer: Blender 4.5"),
+    "windows-x64": Zip("windows-x64", "win_amd64", OFFICIAL, "Windows: Blender 4.5 to 5.2"),
+    "linux-x64-any-python": Zip(
+        "linux-x64", "manylinux.*x86_64", ALL, "Linux: other Blenders with Python 3.11 to 3.14"
+    ),
 }
 
-#: The versions of Python in Blender as blender.org builds it, whose wheels are in the zip of each platform.
-OFFICIAL_PYTHONS = ("cp311", "cp313")
+#: Files of this folder that go into the zip, all but this one.
+SHIPPED = ("LICENSE", "README.md", "pictures/*.png", "**/*.py")
 
-#: The zips that are built, with their platform and their versions of Python; None for every one of the manifest.
-ZIPS: dict[str, tuple[str, tuple[str, ...] | None]] = {
-    **{platform: (platform, OFFICIAL_PYTHONS) for platform in WHEEL_PLATFORMS},
-    "linux-x64-any-python": ("linux-x64", None),
-}
-
-#: Files of this folder that go into the zip, and exceptions from them.
-SHIPPED = ("LICENSE", "**/*.py")
-NOT_SHIPPED = ("build.py",)
-
-#: Files and folders of the project from which our own wheel is built.
-WHEEL_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "crfnet_core", "ocio")
-
-#: The earliest date that a zip can hold.
-DATE = (1980, 1, 1, 0, 0, 0)
+#: Files and folders of the project whose contents are in the version of a build.
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "crfnet_core", "ocio", "blender_addon")
 
 
 class BuildError(Exception):
@@ -64,71 +68,64 @@ class BuildError(Exception):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Build the zips that the command line asks for, and return the exit code, 0 or `FAILED`."""
-    options = _parser().parse_args(argv)
+    """Build the zips that the command line asks for, and return the exit code: 0, or 2 after a failure."""
+    parser = argparse.ArgumentParser(prog="build.py", description="Build the Blender extension, one zip per platform.")
+    parser.add_argument("--platform", action="append", choices=ZIPS, help="again for more (default: all)")
+    parser.add_argument("--out", type=Path, default=ROOT / "dist", help="where the zips go (default: dist)")
+    parser.add_argument("--cache", type=Path, default=ROOT / "build" / "wheels", help="keeps downloads (build/wheels)")
+    options = parser.parse_args(argv)
     try:
-        for path in build_addon(options.platform or list(ZIPS), out=options.out, cache=options.cache):
-            sys.stdout.write(f"{path}  {path.stat().st_size / 1e6:.1f} MB\n")
+        zips = build_addon(options.platform or list(ZIPS), out=options.out, cache=options.cache)
     except (BuildError, OSError) as problem:
         sys.stderr.write(f"{problem}\n")
-        return FAILED
+        return 2
+    for name, path in zips.items():
+        sys.stdout.write(f"{path}  {path.stat().st_size / 1e6:.0f} MB  {ZIPS[name].audience}\n")
+    sys.stdout.write(f"{(options.out / INDEX).resolve().as_uri()}  all of them, as a repository for Blender\n")
     return 0
 
 
-def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
-    """Write zips and our own wheel, each with its list of components; return the paths of the zips.
+def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> dict[str, Path]:
+    """Write zips and our own wheel, each with its list of components, and the index; return the paths of the zips.
 
     `names` are keys of `ZIPS`, `out` is the folder for the zips, and `cache` keeps the downloads.
 
     Raise BuildError if a wheel cannot be downloaded or has another SHA-256, or the version numbers disagree.
     """
     text = (ADDON / MANIFEST).read_text(encoding="utf-8")
-    own_wheel = build_own_wheel(tomllib.loads(text)["version"], cache)
-    text = re.sub(r"crfnet-[^-\n]+-py3-none-any\.whl", own_wheel.name, text)
-    manifest = tomllib.loads(text)
+    version = tomllib.loads(text)["version"]
+    own_wheel = build_own_wheel(version, cache)
+    build = own_wheel.name.split("-")[1]
+    text = re.sub(rf'(^version = "|/crfnet-){re.escape(version)}(?=["-])', rf"\g<1>{build}", text, flags=re.MULTILINE)
     out.mkdir(parents=True, exist_ok=True)
-    zips = []
-    for zip_name in names:
-        platform, pythons = ZIPS[zip_name]
-        members = {path.relative_to(ADDON).as_posix(): path for path in shipped_files()}
-        wheels = platform_wheels(manifest["wheels"], platform, pythons)
-        for wheel in wheels:
-            name = Path(wheel).name
-            members[wheel.removeprefix("./")] = own_wheel if name == own_wheel.name else fetch_wheel(name, cache)
-        contents = {name: path.read_bytes() for name, path in members.items()}
-        contents[MANIFEST] = platform_manifest(text, platform, wheels).encode()
-        zips.append(out / f"{manifest['id']}-{manifest['version']}-{zip_name.replace('-', '_')}.zip")
-        write_zip(zips[-1], contents)
-        write_sbom(zips[-1], [members[wheel.removeprefix("./")] for wheel in wheels])
+    zips = {name: out / f"{tomllib.loads(text)['id']}-{version}-{name.replace('-', '_')}.zip" for name in names}
+    for name, path in zips.items():
+        manifest = platform_manifest(text, ZIPS[name])
+        wheel_names = [Path(wheel).name for wheel in tomllib.loads(manifest)["wheels"]]
+        wheels = [own_wheel if each == own_wheel.name else fetch_wheel(each, cache) for each in wheel_names]
+        contents = {file.relative_to(ADDON).as_posix(): file.read_bytes() for file in shipped_files()}
+        contents |= {f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels}
+        write_zip(path, contents | {MANIFEST: manifest.encode()})
+        write_sbom(path, wheels)
     shutil.copyfile(own_wheel, out / own_wheel.name)
     write_sbom(out / own_wheel.name, [])
+    write_index(out / INDEX, zips)
     return zips
 
 
 def shipped_files() -> list[Path]:
     """Return the files of this folder that go into every zip; the manifest, which differs, is not among them."""
-    paths = {path for pattern in SHIPPED for path in ADDON.glob(pattern)}
-    return sorted(path for path in paths if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
+    return sorted(path for pattern in SHIPPED for path in ADDON.glob(pattern) if path != Path(__file__).resolve())
 
 
-def platform_wheels(wheels: Sequence[str], platform: str, pythons: Sequence[str] | None = None) -> list[str]:
-    """Return the wheels of the manifest that run on a platform, for some versions of Python or for every one."""
-    system, machine = WHEEL_PLATFORMS[platform]
-    chosen = []
-    for wheel in wheels:
-        python, _, tag = Path(wheel).stem.split("-")[-3:]
-        is_for_platform = tag.startswith(system) and tag.endswith(machine)
-        if tag == "any" or (is_for_platform and (pythons is None or python in pythons)):
-            chosen.append(wheel)
-    return chosen
-
-
-def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
+def platform_manifest(text: str, wanted: Zip) -> str:
     """Return the text of the manifest with only one platform and its wheels.
 
     Blender's own `--split-platforms` adds a table [build.generated] instead, which nothing but its installer reads.
     """
-    for key, values in (("platforms", [platform]), ("wheels", wheels)):
+    tags = re.compile(rf".*-(any|({'|'.join(wanted.pythons)})-\w+-{wanted.tag})\.whl")
+    wheels = list(filter(tags.fullmatch, tomllib.loads(text)["wheels"]))
+    for key, values in (("platforms", [wanted.platform]), ("wheels", wheels)):
         lines = "".join(f"    {json.dumps(value)},\n" for value in values)
         text, count = re.subn(rf"^{key} = \[\n.*?^\]$", f"{key} = [\n{lines}]", text, flags=re.MULTILINE | re.DOTALL)
         if count != 1:
@@ -139,16 +136,16 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
 def build_own_wheel(version: str, cache: Path) -> Path:
     """Build the wheel that holds `crfnet_core` and `crfnet` in the folder of the downloads, and return its path.
 
-    Its version ends in a hash of its sources, such as 0.1.0+h1f3a5b7c: Blender keeps an installed wheel if another of
-    the same name and version comes with a newer zip.
+    Its version, and the add-on's, end in a hash of all sources, such as 0.1.0+h1f3a5b7c: Blender keeps an installed
+    wheel if another of the same name and version comes with a newer zip, and offers no update to the same version.
 
     The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
     and OpenColorIO, and the add-on does not import what only the command needs (tqdm, matplotlib).
     """
-    fetch_wheel(_setuptools(), cache)
+    fetch_wheel(next(name for name in _expected_hashes() if name.startswith("setuptools-")), cache)
     with tempfile.TemporaryDirectory() as folder:
         source, out = Path(folder, "source"), Path(folder, "out")
-        for name in WHEEL_SOURCES:
+        for name in SOURCES:
             _copy(ROOT / name, source / name)
         build = f"{version}+{_digest(source)}"
         project = (source / "pyproject.toml").read_text(encoding="utf-8")
@@ -190,7 +187,7 @@ def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
     temporary = path.with_name(f".{path.name}")
     with zipfile.ZipFile(temporary, "w") as archive:
         for name in sorted(contents):
-            info = zipfile.ZipInfo(name, DATE)
+            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # the earliest date
             info.create_system = 3  # Unix, on every system
             info.external_attr = 0o100644 << 16
             archive.writestr(info, contents[name])
@@ -199,7 +196,7 @@ def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
 
 def write_sbom(path: Path, wheels: Sequence[Path]) -> None:
     """Write the CycloneDX list of a zip and the wheels in it, or of a wheel, next to it: `NAME.cdx.json`."""
-    main = {"type": "application", "name": path.name, "hashes": _hashes(path)}
+    main = {"type": "application", "name": path.name, "hashes": [{"alg": "SHA-256", "content": _sha256(path)}]}
     document = {
         "bomFormat": "CycloneDX",
         "specVersion": "1.5",
@@ -207,8 +204,35 @@ def write_sbom(path: Path, wheels: Sequence[Path]) -> None:
         "metadata": {"component": main if wheels else _component(path)},
         "components": [_component(wheel) for wheel in sorted(wheels)],
     }
-    text = json.dumps(document, indent=1) + "\n"
-    path.with_name(f"{path.name}.cdx.json").write_text(text, encoding="utf-8", newline="\n")
+    _write_json(path.with_name(f"{path.name}.cdx.json"), document)
+
+
+def write_index(path: Path, zips: Mapping[str, Path]) -> None:
+    """Write the index of a folder as Blender's own `server-generate` does, from the manifests in the zips.
+
+    Blender takes the first zip that fits, so each is offered to the versions of Python that none before it is for.
+    """
+    data: list[dict[str, Any]] = []
+    taken: set[tuple[str, str]] = set()
+    for name, archive in zips.items():
+        with zipfile.ZipFile(archive) as opened:
+            manifest = tomllib.loads(opened.read(MANIFEST).decode())
+        offers = [(ZIPS[name].platform, f"3.{tag[3:]}") for tag in ZIPS[name].pythons]
+        entry = {key: value for key, value in manifest.items() if key != "wheels"}
+        entry["python_versions"] = [python for platform, python in offers if (platform, python) not in taken]
+        entry["archive_url"] = f"./{quote(archive.name)}"
+        entry["archive_size"] = archive.stat().st_size
+        entry["archive_hash"] = f"sha256:{_sha256(archive)}"
+        taken.update(offers)
+        data.append(entry)
+    _write_json(path, {"version": "v1", "blocklist": [], "data": data})
+
+
+def _write_json(path: Path, document: Mapping[str, Any]) -> None:
+    """Write a JSON file; a reader of the folder sees the earlier one or all of this."""
+    temporary = path.with_name(f".{path.name}")
+    temporary.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8", newline="\n")
+    temporary.replace(path)
 
 
 def _component(wheel: Path) -> dict[str, object]:
@@ -216,34 +240,14 @@ def _component(wheel: Path) -> dict[str, object]:
     name, version = wheel.name.split("-")[:2]
     project = name.replace("_", "-").lower()
     purl = f"pkg:pypi/{project}@{quote(version)}?file_name={quote(wheel.name)}"
-    parts = {"type": "library", "name": project, "version": version, "purl": purl, "bom-ref": purl}
-    return parts | {"hashes": _hashes(wheel)}
-
-
-def _hashes(path: Path) -> list[dict[str, str]]:
-    """Return the SHA-256 of a file as CycloneDX has it."""
-    return [{"alg": "SHA-256", "content": _sha256(path)}]
-
-
-def _parser() -> argparse.ArgumentParser:
-    """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(prog="build.py", description="Build the Blender extension, one zip per platform.")
-    parser.add_argument("--platform", action="append", choices=ZIPS, help="again for more (default: all)")
-    parser.add_argument("--out", type=Path, default=ROOT / "dist", help="where the zips go (default: dist)")
-    parser.add_argument("--cache", type=Path, default=ROOT / "build" / "wheels", help="keeps downloads (build/wheels)")
-    return parser
+    hashes = [{"alg": "SHA-256", "content": _sha256(wheel)}]
+    return {"type": "library", "name": project, "version": version, "purl": purl, "bom-ref": purl, "hashes": hashes}
 
 
 def _expected_hashes() -> dict[str, str]:
     """Return the SHA-256 of every wheel that may be downloaded, by the name of the wheel."""
     lines = (ADDON / "wheels.sha256").read_text(encoding="utf-8").splitlines()
     return {name: digest for digest, name in map(str.split, lines)}
-
-
-def _setuptools() -> str:
-    """Return the name of the setuptools wheel that builds our own."""
-    (name,) = (name for name in _expected_hashes() if name.startswith("setuptools-"))
-    return name
 
 
 def _digest(folder: Path) -> str:

@@ -10,12 +10,12 @@ import os
 import re
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, NoReturn
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.staging import staged_files
+from crfnet_core.staging import OPEN_SETS, staged_files
 
 #: Size in bytes of the largest JSON file that is read.
 MAX_JSON_SIZE = 16 * 2**20
@@ -87,14 +87,20 @@ def atomic_write(
 ) -> Iterator[Path]:
     """Yield an empty temporary file of the same name that takes its place only if the block succeeds.
 
-    It lies in a `staged_files` folder next to `path`, and is on the disk before its name is. Raise `error` as
-    `check_target` does, or when the disk refuses the file.
+    It lies in a new folder of `staged_files`; if `path` lies in an open one, it is written there, and gets its name
+    with the others. Raise `error` as `check_target` does, or when the disk refuses the file.
     """
     try:
         path = check_target(path, overwrite=overwrite, error=error)
-        with staged_files(path.parent, overwrite=overwrite, error=error) as folder:
-            (folder / path.name).touch()
-            yield folder / path.name
+        staged = staged_files(path.parent, overwrite=overwrite, error=error)
+        with nullcontext(path.parent) if path.parent in OPEN_SETS else staged as folder:
+            temporary = folder / path.name
+            try:
+                temporary.touch()
+                yield temporary
+            except BaseException:  # of a set that may go on without it
+                temporary.unlink(missing_ok=True)
+                raise
     except OSError as problem:
         raise error("not_written", path=path, reason=problem.strerror or problem) from problem
 

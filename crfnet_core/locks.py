@@ -1,4 +1,4 @@
-"""Locks of open files between processes; the system lifts them when a process dies."""
+"""Locks of open files between processes; the system lifts them when the file is closed, or a process dies."""
 
 from __future__ import annotations
 
@@ -16,20 +16,9 @@ if sys.platform == "win32":
         file.seek(_LOCKED_BYTE)
         msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
 
-    def unlock(file: IO[Any]) -> None:
-        """Write what is buffered, and unlock a file."""
-        file.flush()
-        file.seek(_LOCKED_BYTE)
-        msvcrt.locking(file.fileno(), msvcrt.LK_UNLCK, 1)
-
 else:
     import fcntl
 
     def lock(file: IO[Any], *, wait: bool = True) -> None:
         """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
         fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-    def unlock(file: IO[Any]) -> None:
-        """Write what is buffered, and unlock a file."""
-        file.flush()
-        fcntl.flock(file, fcntl.LOCK_UN)

@@ -28,12 +28,12 @@ SENTENCES: Mapping[str, str] = {
     "bad_model_json": "{path}: is not JSON with an object; restore it",
     "bad_output": "{folder}: model.onnx answers with {name} of shape {shape} or not finite, needed is {needed}; export"
     " the model again",
-    "external_weights": "{folder}: model.onnx has weights in another file; export the model again",
+    "external_weights": "{folder}: model.onnx has weights in another file, or sparse ones; export the model again",
     "failing_graph": "{folder}: model.onnx fails ({reason}); export the model again",
     "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",
     "other_kind_of_model": "{path}: is for {found} (basis, weights, window size), needed is {needed}, with evidence of"
     " windows or statistics; export the model again",
-    "unloadable_graph": "{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})",
+    "unloadable_graph": "{folder}: model.onnx cannot be loaded; restore it or update ({reason})",
     "unreadable_model": "{path}: cannot be read ({reason}); a model is a folder with model.json and model.onnx",
     # posterior
     "bad_lookalikes": "{path}: lookalikes is a share of all photographs, below 1",

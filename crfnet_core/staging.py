@@ -19,37 +19,28 @@ from typing import IO, Any
 from crfnet_core.errors import CRFNetError
 from crfnet_core.locks import lock
 
-#: How the names of temporary folders begin.
+#: How the names of temporary folders begin, and of what is in them besides the set.
 _PREFIX = ".crfnet-"
 
-#: In a temporary folder: the file that is locked, and the folder for the files that the new ones replace.
-_LOCK, _EARLIER = ".lock", ".earlier"
+#: In a temporary folder: the file that is locked; and, as soon as the set is on the disk, the folder for the files that
+#: it replaces, whose name ends with the number of files in the set.
+_LOCK, _EARLIER = f"{_PREFIX}lock", f"{_PREFIX}earlier-"
+
+#: The temporary folders that are open in this process: a file in one of them gets its name with the set.
+OPEN_SETS: set[Path] = set()
 
 
 @contextmanager
 def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetError] = CRFNetError) -> Iterator[Path]:
     """Yield a temporary folder in `folder`; if the block succeeds, its files take their names in `folder` together.
 
-    Check before whether files of these names may be replaced. If the block fails, or one of the names cannot be taken
-    (a file that is locked, a full disk, an interruption), `folder` is as it was. What killed runs left there is
-    completed and removed: see `remove_abandoned`.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder of the files; it must exist.
-    overwrite : bool
-        Whether files of these names are replaced; if not, files that another process has written meanwhile stay.
-    error : type of CRFNetError
-        The error to raise.
-
-    Raises
-    ------
-    CRFNetError
-        As `error`, if a file cannot take its name. Errors of the block name the files as they will be called.
+    The folder must exist. If the block fails, or a name cannot be taken, it is as it was, and what killed runs left in
+    it is gone. `overwrite` replaces files; without it, files that another process has written meanwhile stay. Raise
+    `error` if a name cannot be taken; errors of the block name the files as they will be called.
     """
     remove_abandoned(folder.absolute())
     temporary, locked = _new_folder(folder)
+    OPEN_SETS.add(temporary)
     try:
         yield temporary
         _publish(temporary, folder, overwrite=overwrite, error=error)
@@ -57,11 +48,11 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
         problem.facts = {name: _renamed(fact, temporary, folder) for name, fact in problem.facts.items()}
         raise
     finally:
-        _put_back(temporary, folder)
+        OPEN_SETS.remove(temporary)
+        _remove(temporary, folder)
         with suppress(OSError):
             locked.close()
-        with suppress(OSError):
-            shutil.rmtree(temporary, ignore_errors=True)
+        _remove(temporary, folder)  # Windows removes no open file
 
 
 @lru_cache(maxsize=256)
@@ -71,19 +62,16 @@ def remove_abandoned(folder: Path) -> None:
     A set that has some of its names gets the others where they are free; so do earlier files that were moved away.
     """
     for temporary in folder.glob(f"{_PREFIX}*"):
-        with suppress(OSError):
+        with suppress(OSError, ValueError):
+            if temporary.is_symlink():
+                continue
             with (temporary / _LOCK).open("ab") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
                 if not _is_there(file, temporary):
                     continue
-                if (temporary / _EARLIER).exists():  # all of the set is on the disk
-                    _name_the_rest(temporary, folder)
-                _put_back(temporary, folder)
-                is_empty = not _earlier_files(temporary)
-                if is_empty:  # before the lock ends, so that nobody takes up a folder that is about to go
-                    shutil.rmtree(temporary, ignore_errors=True)
-            if is_empty and os.name == "nt":  # which removes no open file
-                shutil.rmtree(temporary, ignore_errors=True)
+                _name_the_rest(temporary, folder)
+                _remove(temporary, folder)  # before the lock ends, so that nobody takes up a folder that is about to go
+            _remove(temporary, folder)
 
 
 def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
@@ -130,81 +118,69 @@ def _publish(temporary: Path, folder: Path, *, overwrite: bool, error: type[CRFN
     there = [path.name for path in files if os.path.lexists(folder / path.name)]
     if there and not overwrite:
         raise error("written_meanwhile", path=folder / there[0])
-    earlier, target = temporary / _EARLIER, folder
+    earlier, target = temporary / f"{_EARLIER}{len(files)}", folder
     try:
         for path in files:
             target = folder / path.name
             _flush(path)
-        _flush_folder(temporary)
         earlier.mkdir()
+        _flush(temporary)
         for path in files:
             target = folder / path.name
             if files[1:] and path.name in there:  # a single file is replaced in one step
                 target.replace(earlier / path.name)
             path.replace(target)
-        _flush_folder(folder)
+        _flush(folder)
     except BaseException as problem:
-        for path in files:
-            _take_back(path, folder / path.name, earlier / path.name, was_there=path.name in there)
+        for path in files:  # the new ones go; `_remove` puts the earlier ones back
+            if not os.path.lexists(path) and (path.name not in there or os.path.lexists(earlier / path.name)):
+                with suppress(OSError):
+                    (folder / path.name).unlink()
         if not isinstance(problem, OSError):
             raise
         raise error("not_written", path=target, reason=problem.strerror or problem) from problem
 
 
 def _name_the_rest(temporary: Path, folder: Path) -> None:
-    """Move the files of one folder into another where their names are free."""
-    for path in _staged(temporary):
-        if not os.path.lexists(folder / path.name):
-            path.replace(folder / path.name)
+    """Give the files of a set of which some have their names the others, where they are free."""
+    files = _staged(temporary)
+    if any(len(files) < int(earlier.name.removeprefix(_EARLIER)) for earlier in temporary.glob(f"{_EARLIER}*")):
+        for path in files:
+            if not os.path.lexists(folder / path.name):
+                path.replace(folder / path.name)
 
 
 def _staged(temporary: Path) -> list[Path]:
     """Return the files of a set that are in its temporary folder."""
-    return sorted(path for path in temporary.iterdir() if path.name not in (_LOCK, _EARLIER))
+    return sorted(path for path in temporary.iterdir() if not path.name.startswith(_PREFIX))
 
 
 def _flush(path: Path) -> None:
-    """See that the content of a file is on the disk."""
-    descriptor = os.open(path, os.O_RDWR)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+    """See that the content of a file, or the names in a folder, are on the disk.
 
-
-def _flush_folder(folder: Path) -> None:
-    """See that the names in a folder are on the disk; some network file systems cannot, and Windows does by itself."""
-    if os.name == "nt":
+    Some network file systems cannot flush a folder, and Windows does it by itself.
+    """
+    is_folder = path.is_dir()
+    if is_folder and os.name == "nt":
         return
-    descriptor = os.open(folder, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDONLY if is_folder else os.O_RDWR)
     try:
         os.fsync(descriptor)
     except OSError as problem:
-        if problem.errno not in (errno.EINVAL, errno.ENOTSUP):
+        if not is_folder or problem.errno not in (errno.EINVAL, errno.ENOTSUP):
             raise
     finally:
         os.close(descriptor)
 
 
-def _take_back(path: Path, target: Path, earlier: Path, *, was_there: bool) -> None:
-    """Put the earlier file back into its place, or remove the new one if it was moved there and there was none."""
-    with suppress(OSError):
-        if os.path.lexists(earlier):
-            earlier.replace(target)
-        elif not was_there and not os.path.lexists(path):
-            target.unlink(missing_ok=True)
-
-
-def _put_back(temporary: Path, folder: Path) -> None:
-    """Move the earlier files in a temporary folder back where their names are free, and remove the others."""
-    for path in _earlier_files(temporary):
+def _remove(temporary: Path, folder: Path) -> None:
+    """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays."""
+    for path in temporary.glob(f"{_EARLIER}*/*"):
         with suppress(OSError):
             if os.path.lexists(folder / path.name):
                 path.unlink()
             else:
                 path.replace(folder / path.name)
-
-
-def _earlier_files(temporary: Path) -> list[Path]:
-    """Return the earlier files in a temporary folder."""
-    return list((temporary / _EARLIER).glob("*"))
+    with suppress(OSError):  # also of closing a folder, which `ignore_errors` does not ignore
+        if not any(temporary.glob(f"{_EARLIER}*/*")):
+            shutil.rmtree(temporary, ignore_errors=True)

@@ -86,6 +86,7 @@ SENTENCES: Mapping[str, str] = {
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",
     "config_invalid": "{path}: not written, OpenColorIO refuses it ({reason})",
     "config_not_built_in": "{name}: is not built into this OpenColorIO; known are {known}",
+    "config_reads_device": "{path}: names {file} as a LUT, which is not a file; choose another config",
     "config_refused": "{path}: OpenColorIO refuses this config ({reason}); mend it or choose another",
     "config_unknown": "{name}: is not a config, a built-in config's name or a Blender with one; built in are {known}",
     "config_unreadable": "{path}: cannot be read ({reason}); choose another config",

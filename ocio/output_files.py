@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.files import cut_to_bytes
-from crfnet_core.staging import remove_abandoned
+from crfnet_core.files import check_target, cut_to_bytes
+from crfnet_core.staging import remove_abandoned, staged_files
 
 from .defaults import CONFIG_NAME
 from .errors import PlateError
@@ -61,15 +61,6 @@ class OutputFiles:
         """Every file except the config, which other estimates may share."""
         sheet = () if self.sheet is None else (self.sheet,)
         return (*self.luts, *self.forward, *self.linear, *sheet, self.report)
-
-    def in_folder(self, folder: Path) -> OutputFiles:
-        """Return the same files in another folder."""
-        luts, linear, forward = (
-            tuple(folder / path.name for path in paths) for paths in (self.luts, self.linear, self.forward)
-        )
-        config, report = folder / self.config.name, folder / self.report.name
-        sheet = self.sheet and folder / self.sheet.name
-        return OutputFiles(luts, config, linear, sheet, report, self.color_space, forward)
 
 
 def plain_stem(photo: Path) -> str:
@@ -157,3 +148,18 @@ def output_folder(folder: Path) -> Iterator[None]:
             with suppress(OSError):
                 path.rmdir()
         raise
+
+
+@contextmanager
+def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
+    """Yield the folder that a block writes files to; they take their names together or not at all."""
+    folder = targets[0].parent
+    check_folder(folder)
+    try:
+        with output_folder(folder):
+            for target in targets:
+                check_target(target, overwrite=overwrite)
+            with staged_files(folder, overwrite=overwrite) as temporary:
+                yield temporary
+    except OSError as problem:  # such as on Windows, which does not say before what is not allowed
+        raise PlateError("folder_not_written", path=folder, reason=problem.strerror or problem) from problem

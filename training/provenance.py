@@ -4,8 +4,6 @@ The makers of data (`training.network.shards`, `training.crfnet2017.windows`) le
 record of the run holds these, too, so it reaches back to the files of `training/data/manifest.csv`.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform

@@ -10,8 +10,9 @@ look_group         the response as a compositor node group: from scene-linear li
 curve_nodes        functions of colors as RGB Curves nodes, in as many parts as their precision takes
 node_building      nodes from which the two groups are built
 compositor         the place of the node group in the compositor
+ready_comp         the render over a plate, at the output and in a viewer
 node_links         the nodes behind a node
 code_values        the copy of a plate that the compositor reads, in place of the pixels that Blender linearizes
-color_management   the OpenColorIO config that this Blender runs on
+color_management   the OpenColorIO config that this Blender runs on, and the scene's view transform
 color_space_names  color spaces of a file that was made under another config
 """

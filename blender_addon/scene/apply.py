@@ -8,13 +8,14 @@ import bpy
 from crfnet.options import device_name
 
 from ..work.errors import AddonError
-from ..work.job import Job
+from ..work.job import ApplyMode, Job
 from ..work.run import CompletedJob
+from ..work.wording import shortened
 from ..work.writers import Baked, Exported
 from . import compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
 from .node_links import LOOK, PLATE
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, datablock_of_plate, release_pasted
+from .plates import BAKED_FROM, CODE_VALUES_OF, Datablock, alpha_mode, datablock_of_plate, release_pasted
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -55,7 +56,8 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
     `overwrite` and `force` are not remembered, so the user confirms them every time.
     """
     settings = datablock.camera_response_settings
-    settings.apply = job.output.mode.value
+    if job.output.mode is not ApplyMode.ESTIMATE:
+        settings.chosen = job.output.mode.value  # the preferences stay as they are
     settings.anchor = job.exposure.anchor.value
     settings.gray = job.exposure.gray
     settings.exposure = job.exposure.stops
@@ -75,11 +77,14 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         codes=code_values(datablock),
         group=group,
         exposure=completed.stops,
+        is_composed=completed.job.output.is_composed and compositor.can_compose(context, datablock),
         timing=compositor.timing_of(context, datablock, completed.frames),
     )
     compositor.apply_group(context.scene, shown_tree(context), wanted)
     hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
-    return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before{hint}'
+    if wanted.is_composed:
+        return f"its nodes linearize it behind the render, whose film is transparent now{hint}"
+    return f"its nodes linearize it in the compositor; elsewhere it looks as before{hint}"
 
 
 def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:
@@ -90,6 +95,7 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
         if isinstance(datablock, bpy.types.MovieClip)
         else _linear_image(datablock, baked)
     )
+    linear[BAKED_FROM] = datablock.name
     space = context.space_data
     if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
         space.image = linear
@@ -97,7 +103,7 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
             timing.set_on(space.image_user)
     if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
         space.clip = linear
-    return f'linear plate "{linear.name}" is written to {baked.files[0].parent} and loaded'
+    return f"the linear plate is written to {shortened(str(baked.files[0].parent))} and loaded"
 
 
 def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
@@ -139,9 +145,7 @@ def shown_tree(context: bpy.types.Context) -> bpy.types.NodeTree:
 
     Raise AddonError if it is linked from another file, and so cannot be changed for good.
     """
-    space = context.space_data
-    is_editor = space is not None and space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree"
-    tree = (space.edit_tree if is_editor else None) or compositor.compositor_tree(context.scene)
+    tree = compositor.tree_shown_in(context) or compositor.compositor_tree(context.scene)
     if tree.library is not None or context.scene.library is not None:
         raise AddonError(f"The compositor {tree.name} is linked from another file: make it local first")
     return tree

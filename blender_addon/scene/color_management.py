@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The OpenColorIO config that this Blender runs on, and its color spaces."""
+"""The OpenColorIO config that this Blender runs on, its color spaces, and the scene's view transform."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ CONFIG_NAME = "config.ocio"
 
 #: Environment variables that name Blender's config; Blender 4.5 knows the first only.
 CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
+
+#: The view transform that undoes the encoding of the display; and all, of common configs, that do not darken a plate,
+#: or are not made for pictures.
+STANDARD = "Standard"
+NOT_DARKER = (STANDARD, "Raw", "Un-tone-mapped", "False Color", "Filmic Log")
 
 
 def color_spaces() -> list[str]:
@@ -42,3 +47,24 @@ def running_config() -> str:
     own = Path(bpy.utils.system_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)
     demanded = next((os.environ[name] for name in names if os.environ.get(name)), "")
     return demanded or str(user if user.is_file() else own)
+
+
+def darker_view(scene: bpy.types.Scene) -> str:
+    """Return the view transform of a scene if it shows a plate darker than it was photographed; else an empty text."""
+    view = scene.view_settings.view_transform
+    return "" if view in NOT_DARKER else view
+
+
+def has_standard_view(scene: bpy.types.Scene) -> bool:
+    """Return whether the config has the view transform Standard for the scene's display."""
+    return bool(bpy.types.UILayout.enum_item_name(scene.view_settings, "view_transform", STANDARD))
+
+
+def set_standard_view(scene: bpy.types.Scene) -> bool:
+    """Show a scene by the view transform Standard and nothing else; return False if the config does not have it."""
+    if not has_standard_view(scene):
+        return False
+    view = scene.view_settings
+    view.view_transform, view.look, view.exposure, view.gamma = STANDARD, "None", 0, 1
+    view.use_curve_mapping = view.use_white_balance = False
+    return True

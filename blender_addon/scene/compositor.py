@@ -9,9 +9,10 @@ from typing import TypeAlias
 
 import bpy
 
-from .node_building import GAP, WIDTH, activate
-from .node_links import groups_of, holds_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
+from .node_building import GAP, IS_BLENDER_5, WIDTH, activate
+from .node_links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
 from .plates import Datablock, datablock_of_node
+from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -35,14 +36,9 @@ class FrameTiming:
         return cls(user.frame_duration, user.frame_start, user.frame_offset, user.use_cyclic)
 
     @classmethod
-    def by_number(cls, frames: Sequence[int]) -> FrameTiming:
-        """Return the timing that shows every file on the frame of its number."""
-        return cls(frames[-1] - frames[0] + 1, frames[0], frames[0] - 1)
-
-    @classmethod
-    def from_scene_start(cls, frames: Sequence[int]) -> FrameTiming:
-        """Return the timing that shows the first file on frame 1 of the scene, as where Blender opens a sequence."""
-        return cls(frames[-1] - frames[0] + 1, 1, frames[0] - 1)
+    def by_number(cls, frames: Sequence[int], *, start: int) -> FrameTiming:
+        """Return the timing that shows the file of the first number on a frame of the scene."""
+        return cls(frames[-1] - frames[0] + 1, start, frames[0] - 1)
 
     def shows_any(self, frames: Sequence[int]) -> bool:
         """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
@@ -62,6 +58,7 @@ class PlateNodes:
     codes: Datablock
     group: bpy.types.NodeTree
     exposure: float  # of the Exposure socket, in stops
+    is_composed: bool = False  # whether the render is put over the plate, see `ready_comp`
     timing: FrameTiming | None = None  # of a node that is added; None for a single file
 
 
@@ -75,12 +72,12 @@ def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int
         return None
     timings = map(FrameTiming.from_user, _users(context, plate))
     set_by_user = (timing for timing in timings if timing.duration > 1 and timing.shows_any(frames))
-    return next(set_by_user, FrameTiming.by_number(frames))
+    return next(set_by_user, FrameTiming.by_number(frames, start=frames[0]))
 
 
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
     """Return the scene's compositor tree; a new one hands the render through, so that the picture stays the same."""
-    if bpy.app.version < (5, 0, 0):
+    if not IS_BLENDER_5:
         if scene.node_tree is None:
             scene.use_nodes = True
         return scene.node_tree
@@ -94,9 +91,25 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
     return scene.compositing_node_group
 
 
+def tree_shown_in(context: bpy.types.Context) -> bpy.types.NodeTree | None:
+    """Return the compositor tree that the node editor shows, or else the scene's; None if the scene has none yet."""
+    tree, scene = getattr(context.space_data, "edit_tree", None), context.scene
+    if tree is not None and tree.bl_idname == "CompositorNodeTree":
+        return tree
+    return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+
+
+def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
+    """Return whether the render can be put over a plate: the shown tree has an output, and the plate leads nowhere."""
+    tree = tree_shown_in(context)
+    if tree is None:
+        return True
+    return output_of(tree) is not None and not any(n.outputs["Image"].is_linked for n in _sources(tree, plate))
+
+
 def is_switched_off(scene: bpy.types.Scene) -> bool:
     """Return whether the user has switched off the compositor of a scene, as Blender 4.5 allows."""
-    return bpy.app.version < (5, 0, 0) and not scene.use_nodes
+    return not IS_BLENDER_5 and not scene.use_nodes
 
 
 def apply_group(scene: bpy.types.Scene, tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
@@ -104,16 +117,25 @@ def apply_group(scene: bpy.types.Scene, tree: bpy.types.NodeTree, wanted: PlateN
 
     The links from the plate then start at the group. A group that follows already, whatever stands between, is only
     brought up to date, as all nodes of the group are but for those of other scenes: these keep their exposure. If no
-    node shows the plate, one is added, with a viewer.
+    node shows the plate, one is added, with a viewer. On demand the render is put over it; see `can_compose`.
     """
-    sources = [node for node in tree.nodes if datablock_of_node(node) == wanted.plate]
-    for source in sources or [_add_plate(tree, wanted)]:
+    sources = _sources(tree, wanted.plate)
+    if not sources or wanted.is_composed:
+        sources = sources or [_add_plate(tree, wanted)]
+        _link_on(tree, sources[0], wanted)
+    for source in sources:
         _show(source, wanted)
         if not _groups_behind(source, wanted.plate):
             activate(_insert(tree, source, wanted.group))
     for node in groups_of(wanted.plate, scene):
         node.node_tree, node.mute = wanted.group, False
         node.inputs["Exposure"].default_value = wanted.exposure
+
+
+def set_exposure(plate: Datablock, scene: bpy.types.Scene, exposure: float) -> None:
+    """Set the exposure, in stops, of all nodes of a plate's node group or Camera Look; not of other scenes."""
+    for node in groups_of(plate, scene, PLATE) + groups_of(plate, scene, LOOK):
+        node.inputs["Exposure"].default_value = exposure
 
 
 def is_linearized(plate: Datablock, scene: bpy.types.Scene) -> bool:
@@ -174,7 +196,7 @@ def _left(node: bpy.types.Node) -> float:
 
 
 def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
-    """Return a new node for the plate, below all others and linked to a viewer that shows nothing else."""
+    """Return a new node for the plate, below all others."""
     bottom = min((node.location_absolute.y - node.height for node in tree.nodes), default=0)
     if isinstance(wanted.plate, bpy.types.Image):
         node = tree.nodes.new("CompositorNodeImage")
@@ -183,19 +205,28 @@ def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
             wanted.timing.set_on(node)
     else:
         node = tree.nodes.new("CompositorNodeMovieClip")
-    node.location, node.width = (0, bottom - 200), WIDTH
-    viewer = next((other for other in tree.nodes if other.type == "VIEWER" and _is_free(other)), None)
-    if viewer is None:
-        viewer = tree.nodes.new("CompositorNodeViewer")
-        viewer.location = (700, bottom - 200)
-    tree.links.new(node.outputs["Image"], viewer.inputs["Image"])
-    tree.nodes.active = viewer
+    node.location, node.width = (0, bottom - 300), WIDTH
     return node
 
 
-def _is_free(viewer: bpy.types.Node) -> bool:
-    """Return whether a viewer shows nothing, or a plate behind its node group."""
-    return all(linearizes(link.from_node) for link in viewer.inputs["Image"].links)
+def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNodes) -> None:
+    """Link the node of a plate to the ready comp, or to a viewer that shows nothing else."""
+    place = (source.location_absolute.x + source.width + GAP, source.location_absolute.y)
+    output = output_of(tree)
+    if wanted.is_composed and output is not None:
+        target = put_render_over_plate(output, place)
+    else:
+        viewer = next((node for node in tree.nodes if node.type == "VIEWER" and is_free(node)), None)
+        if viewer is None:
+            viewer = tree.nodes.new("CompositorNodeViewer")
+            viewer.location = place
+        tree.nodes.active, target = viewer, viewer.inputs["Image"]
+    tree.links.new(source.outputs["Image"], target)
+
+
+def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
+    """Return the nodes of a tree that show a plate or its code values."""
+    return [node for node in tree.nodes if datablock_of_node(node) == plate]
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:

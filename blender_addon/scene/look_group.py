@@ -22,7 +22,7 @@ from .color_management import color_spaces
 from .curve_nodes import STEPS, add_curves
 from .node_building import GAP, WIDTH, NodeGrid, activate
 from .node_group import by_channel, linear_rec709, made_for, new_group, working_space
-from .node_links import LOOK, groups_of, holds_group_of
+from .node_links import LOOK, groups_of, holds_group_of, output_of
 from .plates import Datablock
 
 #: The output of the group with code values.
@@ -95,7 +95,7 @@ def srgb() -> str:
 
 def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
     """Return the look that leads to the output of a tree, of whatever plate; else a new node."""
-    output = _output(tree)
+    output = output_of(tree)
     link = output.inputs[0].links[0] if output is not None and output.inputs[0].links else None
     earlier = link.from_node if link is not None else None
     if LOOK in (getattr(earlier, "node_tree", None) or {}):
@@ -109,19 +109,15 @@ def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
 
 
 def _link(tree: bpy.types.NodeTree, node: bpy.types.Node) -> None:
-    """Put a look between the output of a tree and what leads to it, unless it is there already."""
-    output = _output(tree)
+    """Put a look between the output of a tree, with its viewers, and what leads to it, unless it is there already."""
+    output = output_of(tree)
     if output is None:
         return
     source = output.inputs[0].links[0].from_socket if output.inputs[0].links else None
     if source is not None and source.node == node:
         return
+    viewers = [] if source is None else [link.to_socket for link in source.links if link.to_node.type == "VIEWER"]
+    for target in (output.inputs[0], *viewers):
+        tree.links.new(node.outputs["Image"], target)
     if source is not None:
         tree.links.new(source, node.inputs["Image"])
-    tree.links.new(node.outputs["Image"], output.inputs[0])
-
-
-def _output(tree: bpy.types.NodeTree) -> bpy.types.Node | None:
-    """Return the node whose input is rendered; None if the tree has none."""
-    kinds = ("COMPOSITE", "GROUP_OUTPUT")
-    return next((node for node in tree.nodes if node.type in kinds and node.inputs), None)

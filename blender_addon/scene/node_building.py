@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: The distance between a group's node and its neighbors, and its width, in units of the node editor.
-GAP, WIDTH = 60, 220
+GAP, WIDTH = 60, 320
 
 #: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")

@@ -125,6 +125,12 @@ def linearizes(node: bpy.types.Node) -> bool:
     return node.type == "GROUP" and node.node_tree is not None and PLATE in node.node_tree and not node.mute
 
 
+def output_of(tree: bpy.types.NodeTree) -> bpy.types.Node | None:
+    """Return the node whose input is rendered; None if the tree has none."""
+    kinds = ("COMPOSITE", "GROUP_OUTPUT")
+    return next((node for node in tree.nodes if node.type in kinds and node.inputs), None)
+
+
 def _title(node: bpy.types.Node) -> str:
     """Return the text in the head of a node."""
     return node.label or node.name

@@ -33,6 +33,9 @@ CODE_VALUES_OF = "camera_response_code_values_of"
 #: The custom property that marks a linear plate that is only shown for comparison; its value is the plate.
 COMPARED_PLATE = "camera_response_plate"
 
+#: The custom property of a linear plate that was baked; its value is the name of the plate.
+BAKED_FROM = "camera_response_baked_from"
+
 #: The custom property with the first `short_hash` of a plate, on the plate and on the data that was made for it.
 _HASH = "camera_response_hash"
 
@@ -140,6 +143,8 @@ def obstacle(datablock: Datablock) -> str:
         return problem
     if CODE_VALUES_OF in datablock:
         return "These are the code values of a plate, not the plate: open the photograph itself"
+    if BAKED_FROM in datablock:
+        return f"This is the linear plate of {datablock[BAKED_FROM]}, which has no camera response any more"
     if datablock.filepath.lower().endswith(".gif"):
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 KEY = "camera_response"
 
 #: The version of its entries.
-LAYOUT = 2
+LAYOUT = 3
 
 #: The entry with the exposure that was applied, in stops; it is set later.
 EXPOSURE = "exposure"
@@ -58,6 +58,7 @@ def store(datablock: Datablock, estimate: ResponseEstimate) -> None:
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
     earlier = datablock[KEY].to_dict() if is_stored(datablock) else {}
     file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS) if earlier.get(name)}
+    datablock.pop(KEY, None)  # Blender 4.5 does not replace one that reading `camera_response` has made
     datablock[KEY] = {"layout": LAYOUT, **panel_text(estimate)._asdict(), **entries, **file_entries}
 
 
@@ -74,7 +75,7 @@ def is_stored(datablock: Datablock | None) -> bool:
 
 
 def verdict(datablock: Datablock) -> str:
-    """Return the verdict of the stored estimate: "good", "usable" or `DO_NOT_TRUST`."""
+    """Return the verdict of the stored estimate: "usable" or `DO_NOT_TRUST`."""
     return datablock[KEY]["verdict"]
 
 

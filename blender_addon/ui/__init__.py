@@ -8,6 +8,7 @@ panel           the sidebar panel and the menu entries of three editors
 estimate_box    the panel's box of an estimate
 image_editor    tools of the Image Editor: before and after, the eyedropper for gray
 plate_settings  the choices for one plate
+camera_response the stored response, as scripts read it
 preferences     the choices for every file
 more            the sub-panel "More": the look of the camera, other plates
 handlers        for opening and saving a .blend file, and for undo

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel's box of an estimate: the verdict in a word, the curve, warnings, and the details on request."""
+"""The panel's box of an estimate, with the verdict in a word and the curve; warnings, and details on request."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are reg
 
 #: Each verdict in a word or two, with its icon and its meaning.
 VERDICTS = {
-    "good": ("Good", "CHECKMARK", ""),
     "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
     stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
 }
@@ -39,8 +38,9 @@ CAPTION = "Code value (a line every 64) by stops below white (every 2). Blue: 90
 #: a scale of 1.
 _LETTER, _BORDER, _ICON = 6, 60, 20
 
-#: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
-_SMALLEST, _LARGEST = 9, 18
+#: The side of the picture of the curve, and the least and the largest side of the one in the details, in units of the
+#: interface, which are as wide as an icon.
+_SMALL, _LEAST, _LARGEST = 6, 9, 18
 
 #: The distance of lines that belong together, relative to the distance of buttons.
 _LINE = 0.75
@@ -53,10 +53,10 @@ class _Wrapper(textwrap.TextWrapper):
 
 
 def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw the stored estimate of a plate in one box."""
+    """Draw the verdict on the stored estimate of a plate, and its curve, in one box."""
     letters = letters_of(context)
     word, icon, meaning = _verdict_words(datablock)
-    advice, details, warnings = stored_estimate.panel_paragraphs(datablock)
+    advice = stored_estimate.panel_paragraphs(datablock)[0]
     is_doubted = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
     box = layout.box()
     column = box.column(align=True)
@@ -68,21 +68,33 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops) and not is_doubted:
         column.label(text=f"Expected error {stops:.2f} stop")
-    box.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_SMALLEST, _width(context) / _ICON)))
-    draw_text(box, CAPTION, letters)
+    box.template_icon(icon_value=curve_icon(datablock), scale=_SMALL)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
-    draw_paragraphs(box, warnings, letters, icon="ERROR")
+
+
+def draw_notices(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the warnings of the stored estimate of a plate, and stored cameras."""
+    letters = letters_of(context)
+    draw_paragraphs(layout, stored_estimate.panel_paragraphs(datablock)[2], letters, icon="ERROR")
     if name := stored_estimate.camera(datablock):
-        draw_text(box, f"This is the response of the stored camera {name}.", letters, icon="CAMERA_DATA")
-        box.operator("crf.estimate_response", text="Estimate from the Plate").camera = ""
+        draw_text(layout, f"This is the response of the stored camera {name}.", letters, icon="CAMERA_DATA")
+        layout.operator("crf.estimate_response", text="Estimate from the Plate").camera = ""
     for name, words in stored_estimate.offers(datablock):
-        draw_text(box, words, letters, icon="CAMERA_DATA")
-        box.operator("crf.estimate_response", text=f"Use {name}").camera = name
+        draw_text(layout, words, letters, icon="CAMERA_DATA")
+        layout.operator("crf.estimate_response", text=f"Use {name}").camera = name
+
+
+def draw_details(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the curve of the stored estimate as large as fits, and all sentences about it; closed at first."""
     header, body = layout.panel("CRF_details", default_closed=True)
     header.label(text="Details")
-    if body is not None:
-        draw_paragraphs(body, details, letters)
+    if body is None:
+        return
+    letters, side = letters_of(context), _width(context) / _ICON
+    body.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_LEAST, side)))
+    draw_text(body, CAPTION, letters)
+    draw_paragraphs(body, stored_estimate.panel_paragraphs(datablock)[1], letters)
 
 
 def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:

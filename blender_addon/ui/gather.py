@@ -30,13 +30,11 @@ def gather_job(
     """Return the job of a plate: to apply its stored estimate (`is_estimated`), or to estimate its response anew.
 
     `arguments` of the operator take precedence over the settings of the plate. Raise AddonError if no response can be
-    estimated from the plate, its file is not found, or an estimate is to be applied and Apply As is Estimate Only;
-    ConfigError if the config lacks a color space that the nodes need.
+    estimated from the plate, or its file is not found; ConfigError if the config lacks a color space that the nodes
+    need.
     """
     settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
-    if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
-        raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
     plate = plates.plate_of(datablock)
     if chosen["apply"] == ApplyMode.NODES:
         if not plates.is_shown(datablock):
@@ -63,7 +61,14 @@ def gather_job(
             origin=stored_estimate.origin(datablock) if is_estimated else "",
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),
-        output=_output(plate, chosen, despite_verdict=despite_verdict),
+        output=Output(
+            mode=ApplyMode(chosen["apply"]),
+            folder=absolute(chosen["folder"]) or _usual_folder(chosen["apply"], plate),
+            depth=chosen["depth"],
+            overwrite=chosen["overwrite"],
+            is_composed=chosen["compose"],
+            despite_verdict=despite_verdict,
+        ),
         config=color_management.running_config(),
     )
 
@@ -74,19 +79,7 @@ def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | N
     return stored_estimate.primaries(datablock) if is_same and not stored_estimate.origin(datablock) else None
 
 
-def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:
-    """Return what becomes of the response."""
-    mode = ApplyMode(chosen["apply"])
-    return Output(
-        mode=mode,
-        folder=absolute(chosen["folder"]) or _usual_folder(mode, plate),
-        depth=chosen["depth"],
-        overwrite=chosen["overwrite"],
-        despite_verdict=despite_verdict,
-    )
-
-
-def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
+def _usual_folder(mode: str, plate: Plate) -> Path | None:
     """Return the folder for files if none was chosen: of the preferences, the plate or the .blend file."""
     if mode in WITHOUT_FILES:
         return None

@@ -26,14 +26,8 @@ def end_comparisons(*_arguments: Any) -> None:
 
 
 @bpy.app.handlers.persistent
-def note_files_as_read(_path: str = "") -> None:
-    """Note that the code values of all plates are from their present files, which Blender has just read."""
-    code_values.note_files_as_read()
-
-
-@bpy.app.handlers.persistent
-def rename_color_spaces(_path: str = "") -> None:
-    """Give the color spaces of a file that may have been made under another config the names of the present one."""
+def rename_color_spaces(*_arguments: Any) -> None:
+    """Name the color spaces of a file, which may have been made under another config, as the present one does."""
     if node_links.has_groups():
         try:
             lazy_import.load(".scene.color_space_names").rename_color_spaces()
@@ -42,33 +36,36 @@ def rename_color_spaces(_path: str = "") -> None:
 
 
 @bpy.app.handlers.persistent
-def pack_code_values(*_arguments: Any) -> None:
-    """Pack the code values of plates that have been packed."""
+def check_opened_file(*_arguments: Any) -> None:
+    """Check color spaces, and note that the code values are from the present files, which Blender has just read."""
+    comparison.end_all()
+    rename_color_spaces()
+    code_values.note_files_as_read()
+
+
+@bpy.app.handlers.persistent
+def prepare_saving(*_arguments: Any) -> None:
+    """Pack the code values of plates that have been packed, and show no linear plate."""
     code_values.pack_with_plates()
+    comparison.end_all()
 
 
 #: The handlers: Blender's name of the occasion, and the function.
-_HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
-    ("load_post", end_comparisons),
-    ("load_post", rename_color_spaces),
-    ("blend_import_post", rename_color_spaces),
-    ("load_post", note_files_as_read),
-    ("save_pre", pack_code_values),
-    ("save_pre", end_comparisons),
-    ("undo_pre", end_comparisons),
-    ("undo_post", end_comparisons),
-    ("redo_pre", end_comparisons),
-    ("redo_post", end_comparisons),
-)
+_HANDLERS: dict[str, Callable[..., None]] = {
+    "load_post": check_opened_file,
+    "blend_import_post": rename_color_spaces,
+    "save_pre": prepare_saving,
+    **dict.fromkeys(("undo_pre", "undo_post", "redo_pre", "redo_post"), end_comparisons),
+}
 
 
 def register() -> None:
     """Add the handlers."""
-    for name, function in _HANDLERS:
+    for name, function in _HANDLERS.items():
         getattr(bpy.app.handlers, name).append(function)
 
 
 def unregister() -> None:
     """Remove the handlers."""
-    for name, function in _HANDLERS:
+    for name, function in _HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(function)

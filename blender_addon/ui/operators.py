@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..work.run import CompletedJob
 
 #: The report on an estimate that is not applied because it is not to be trusted.
-WITHHELD = "not applied; to use it all the same, press Apply Anyway"
+WITHHELD = "not applied; to use it all the same, press Apply Anyway (anyway=True)"
 
 
 class PlateOperator(ChosenPlate, PlateChoices):
@@ -35,9 +35,6 @@ class PlateOperator(ChosenPlate, PlateChoices):
     data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
-    apply: bpy.props.EnumProperty(
-        name="Apply As", description="What becomes of the response", items=APPLY_MODES, default="ESTIMATE"
-    )
     anyway: bpy.props.BoolProperty(
         name="Anyway", description="Apply the response even if it is not to be trusted", options={"SKIP_SAVE"}
     )
@@ -53,7 +50,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
         """Run the job, and return when it is done."""
         try:
             job = self._gather_job(context)
-            return self._apply(context, lazy_import.load(".work.run").run(job))
+            return self._apply(context, lazy_import.load(".work.run").run(job), withheld="ERROR")
         except expected_errors() as problem:
             return failed(self, problem)
 
@@ -97,13 +94,15 @@ class PlateOperator(ChosenPlate, PlateChoices):
         if is_doubted and not self.anyway:
             raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
+        if not self.is_estimated:
+            arguments.setdefault("apply", "ESTIMATE")
         gather = lazy_import.load(".ui.gather")
         return gather.gather_job(
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
         )
 
-    def _apply(self, context: bpy.types.Context, completed: "CompletedJob") -> set[str]:
-        """Apply a completed job to the scene, and report what was done."""
+    def _apply(self, context: bpy.types.Context, completed: "CompletedJob", withheld: str = "WARNING") -> set[str]:
+        """Apply a completed job to the scene, and report what was done; `withheld` is the kind of report if nothing."""
         comparison.end_all()
         done = lazy_import.load(".scene.apply").apply(context, completed)
         if completed.is_applied:
@@ -113,19 +112,26 @@ class PlateOperator(ChosenPlate, PlateChoices):
             failed(self, completed.problem)
             return {"FINISHED"}
         message = report_line(completed.job.plate.name, completed.estimate, WITHHELD if completed.is_withheld else done)
-        self.report({"WARNING"} if completed.is_doubtful else {"INFO"}, message)
+        kind = withheld if completed.is_withheld else "WARNING" if completed.is_doubtful else "INFO"
+        self.report({kind}, message)
         return {"FINISHED"}
 
 
 class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
-    """Estimate the camera's response from the active photograph, sequence or movie, and apply it as chosen."""
+    """Estimate the camera's response from the active photograph, sequence or movie; a script can have it applied."""
 
     bl_idname = "crf.estimate_response"
     bl_label = "Estimate Camera Response"
     bl_description = (
-        "Estimate the camera's response from the photograph, sequence or movie, and do with it what Apply As says"
+        "Estimate the camera's response from the photograph, sequence or movie. Nothing else changes until you apply it"
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    apply: bpy.props.EnumProperty(
+        name="Apply As",
+        description="What becomes of the response",
+        items=(("ESTIMATE", "Estimate Only", "Change nothing else"), *APPLY_MODES),
+    )
 
 
 class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
@@ -135,6 +141,8 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
     bl_label = "Apply Camera Response"
     bl_description = "Apply the response that was estimated for this plate, with the present settings"
     bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
 
     is_estimated = True
 

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..scene import code_values, node_links, plates, stored_estimate
+from ..scene import code_values, compositor, node_links, plates, stored_estimate
 from ..work.job import WITHOUT_FILES
 from . import running
-from .estimate_box import draw_estimate, draw_paragraphs, draw_text, letters_of
+from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
-from .more.panel import draw_more
+from .more.add_look import CRF_OT_add_look
+from .more.load_lut import CRF_OT_load_lut
+from .more.other_plates import CRF_OT_copy_response
+from .more.standard_view import draw_view
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .plate_settings import is_applied, is_to_be_applied
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
-
-#: The width of the word "stops", in units of the interface.
-_UNIT_WIDTH = 2.5
 
 
 class ResponsePanel:
@@ -35,10 +35,10 @@ class ResponsePanel:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether the editor can show a plate: the node editor can only as the compositor."""
-        return context.space_data.type != "NODE_EDITOR" or context.space_data.tree_type == "CompositorNodeTree"
+        return getattr(context.space_data, "tree_type", "CompositorNodeTree") == "CompositorNodeTree"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button or the progress, the estimate of the plate, and the settings by which it is applied."""
+        """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
         layout, datablock = self.layout, plates.active_datablock(context)
         if run := running.current():
             _draw_progress(layout, run)
@@ -53,9 +53,13 @@ class ResponsePanel:
         is_stored = stored_estimate.is_stored(datablock)
         if is_stored:
             draw_estimate(layout, context, datablock)
+            _draw_apply(layout, context, datablock)
+            draw_notices(layout, context, datablock)
             _draw_warnings(layout, context, datablock)
+            draw_details(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
-            _draw_settings(layout, context, datablock)
+            _draw_more(layout, is_stored=is_stored)
+            _draw_advanced(layout, context, datablock.camera_response_settings)
 
 
 class CRF_PT_image(ResponsePanel, bpy.types.Panel):
@@ -80,13 +84,11 @@ class CRF_PT_node(ResponsePanel, bpy.types.Panel):
 
 
 def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """Draw the entries of a menu; the node editor has them only as the compositor."""
-    space = context.space_data
-    if space is not None and space.type == "NODE_EDITOR" and space.tree_type != "CompositorNodeTree":
-        return
-    menu.layout.separator()
-    menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
-    menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
+    """Draw the entries of a menu, where there is a panel."""
+    if ResponsePanel.poll(context):
+        menu.layout.separator()
+        menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
+        menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
 
 
 def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
@@ -111,57 +113,66 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
         draw_text(layout, "Its nodes do not follow your painting: apply it again.", letters_of(context), icon="INFO")
 
 
+def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the ways to apply the estimate, the button that does it, and the settings of the chosen way."""
+    settings, letters = datablock.camera_response_settings, letters_of(context)
+    row = layout.row(align=True)
+    row.enabled = running.current() is None
+    row.prop(settings, "apply", expand=True)
+    is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
+    text, icon, state, state_icon = ("Apply", "CHECKMARK", "", "NONE")
+    if not is_trusted:
+        text, icon, state = "Apply Anyway", "ERROR", "The plate was not changed."
+    if has_been := is_applied(datablock):
+        text, icon, state, state_icon = "Apply Again", "FILE_REFRESH", "Applied with these settings.", "CHECKMARK"
+    elif is_to_be_applied(datablock):
+        state, state_icon = "Changed settings count once they are applied.", "INFO"
+    layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
+    draw_text(layout, state, letters, icon=state_icon)
+    _draw_settings(layout, context, datablock)
+    if has_been and settings.apply != "EXPORT":
+        draw_view(layout, context, has_nodes=settings.apply == "NODES")
+
+
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw the settings that matter for the chosen way to apply the response, and the button that does it."""
+    """Draw the settings that matter for the chosen way to apply the response."""
     settings = datablock.camera_response_settings
+    if settings.apply == "NODES" and compositor.can_compose(context, datablock):
+        layout.prop(settings, "compose")
     column = _split_column(layout)
-    column.prop(settings, "apply")
-    column.prop(settings, "anchor")
-    if settings.anchor == "GRAY":
-        row = column.row(align=True)
-        row.prop(settings, "gray", slider=True)
-        if context.space_data.type == "IMAGE_EDITOR":
-            row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
-    row = column.row(align=True)
-    row.prop(settings, "exposure")
-    unit = row.row()
-    unit.ui_units_x = _UNIT_WIDTH
-    unit.label(text="stops")
+    column.prop(settings, "exposure")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in WITHOUT_FILES:
         column.prop(settings, "folder", placeholder="Folder of the plate")
         column.prop(settings, "overwrite")
-    if stored_estimate.is_stored(datablock):
-        _draw_apply(layout, context, datablock)
-    draw_more(layout, context, datablock)
-    _draw_advanced(layout, settings)
 
 
-def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw whether the estimate is applied, and the button that applies it, or the choice that comes first."""
-    if datablock.camera_response_settings.apply == "ESTIMATE":
-        draw_text(layout, "Choose under Apply As what to make of the response.", letters_of(context))
-        return
-    is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
-    text, icon = ("Apply", "CHECKMARK") if is_trusted else ("Apply Anyway", "ERROR")
-    if is_applied(datablock):
-        draw_text(layout, "Applied with these settings.", letters_of(context), icon="CHECKMARK")
-        text, icon = "Apply Again", "FILE_REFRESH"
-    elif is_to_be_applied(datablock):
-        draw_text(layout, "Changed settings count once they are applied.", letters_of(context), icon="INFO")
-    elif not is_trusted:
-        draw_text(layout, "The plate was not changed.", letters_of(context))
-    layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
+def _draw_more(layout: bpy.types.UILayout, *, is_stored: bool) -> None:
+    """Draw further uses of the response of a plate, and the button that loads one, closed at first."""
+    header, body = layout.panel("CRF_more", default_closed=True)
+    header.label(text="More")
+    if body is not None:
+        column = body.column(align=True)
+        column.operator(CRF_OT_load_lut.bl_idname, icon="FILE_FOLDER")
+        if is_stored:
+            column.operator(CRF_OT_add_look.bl_idname, icon="CAMERA_DATA")
+            column.operator(CRF_OT_copy_response.bl_idname, icon="DUPLICATE")
 
 
-def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
     """Draw settings that few plates need, closed at first."""
     header, body = layout.panel("CRF_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
         return
     column = _split_column(body)
+    column.prop(settings, "anchor")
+    if settings.anchor == "GRAY":
+        row = column.row(align=True)
+        row.prop(settings, "gray", slider=True)
+        if context.space_data.type == "IMAGE_EDITOR":
+            row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
     column.prop(settings, "camera")
     column.prop(settings, "prior")
     column.prop(settings, "device")

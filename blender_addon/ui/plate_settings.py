@@ -7,6 +7,7 @@ import bpy
 
 from .. import lazy_import
 from ..scene import compositor, plates, stored_estimate
+from ..scene.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
@@ -58,6 +59,18 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     return cameras
 
 
+def _expose_nodes(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
+    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
+    plate = settings.id_data
+    applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
+    if applied is None or applied["apply"] != "NODES":
+        return
+    stops = stored_estimate.exposure(plate) + settings.exposure - applied["exposure"]
+    stored_estimate.set_entry(plate, stored_estimate.EXPOSURE, stops)
+    applied["exposure"] = settings.exposure
+    compositor.set_exposure(plate, bpy.context.scene, stops)
+
+
 class PlateChoices:
     """The choices for a plate that the panel offers and the operators take as arguments."""
 
@@ -76,11 +89,15 @@ class PlateChoices:
     )
     exposure: bpy.props.FloatProperty(
         name="Exposure",
-        description="Stops added on top of the anchor. Applying sets the Exposure of the node group, too",
+        description="Stops added on top of the anchor. The nodes of an applied response follow at once",
         soft_min=-6,
         soft_max=6,
         min=-MAX_EXPOSURE,
         max=MAX_EXPOSURE,
+        update=_expose_nodes,
+    )
+    compose: bpy.props.BoolProperty(
+        name="Compose Render over Plate", description="Put the render over a plate that no node shows yet"
     )
     folder: bpy.props.StringProperty(
         name="Folder",
@@ -94,8 +111,9 @@ class PlateChoices:
     )
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
-        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear, and"
-        " take OpenEXR files for encoded that do not say what they hold",
+        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear."
+        " OpenEXR files are never estimated: where they do not say what they hold, a response from a LUT or another"
+        " plate then takes them for encoded",
     )
     camera: bpy.props.StringProperty(
         name="Camera",
@@ -118,16 +136,32 @@ class PlateChoices:
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
+def _choose(settings: bpy.types.PropertyGroup, number: int) -> None:
+    """Choose how to apply the response of a plate, and of plates for which nothing is chosen yet."""
+    settings.chosen = preferences().apply_as = _MODES[number]
+    bpy.context.preferences.is_dirty = True  # Blender saves them when it quits
+
+
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
-    """The settings of one plate; until `apply` is set, the preferences count."""
+    """The settings of one plate; until `apply` is set, the preferences count, and the compositor for `compose`."""
 
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
+    chosen_comp: bpy.props.IntProperty(options={"HIDDEN"}, default=-1)
     apply: bpy.props.EnumProperty(
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
-        get=lambda self: _MODES.index(self.chosen or preferences().apply),
-        set=lambda self, number: setattr(self, "chosen", _MODES[number]),
+        get=lambda self: _MODES.index(self.chosen if self.chosen in _MODES else preferences().apply_as),
+        set=_choose,
+    )
+    compose: bpy.props.BoolProperty(
+        name="Compose Render over Plate",
+        description="Scale the plate to the render, and put all that went to the output over it, with a transparent"
+        " film. On at first unless the compositor has nodes of yours",
+        get=lambda self: (
+            is_plain(compositor.tree_shown_in(bpy.context)) if self.chosen_comp < 0 else bool(self.chosen_comp)
+        ),
+        set=lambda self, is_wanted: setattr(self, "chosen_comp", int(is_wanted)),
     )
 
 

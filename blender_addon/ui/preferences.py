@@ -10,17 +10,14 @@ from ..work.errors import AddonError
 #: The name by which Blender knows the add-on: the name of its root package.
 ADDON = __package__.rpartition(".")[0]
 
-#: The uses of a response, as in `work.job.ApplyMode`.
+#: The ways to apply a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
-    ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 0),
-    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor", "NODETREE", 1),
-    ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them", "FILE_IMAGE", 2),
+    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor"),
+    ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them"),
     (
         "EXPORT",
         "Export",
-        "Write LUT files, and a copy of the OpenColorIO config that Blender runs on with a color space for the plate",
-        "EXPORT",
-        3,
+        "Write LUT files, and a copy of Blender's OpenColorIO config with a color space for the plate",
     ),
 )
 
@@ -42,11 +39,10 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         subtype="DIR_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
-    apply: bpy.props.EnumProperty(
+    apply_as: bpy.props.EnumProperty(
         name="Apply As",
-        description="What becomes of the first response of a plate",
+        description="The way to apply the response of a new plate: the one that was chosen last",
         items=APPLY_MODES,
-        default="ESTIMATE",
     )
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -54,9 +50,11 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(self, "apply")
+        layout.prop(self, "apply_as")
         layout.prop(self, "folder", placeholder="The plate's own folder")
         layout.prop(self, "model", placeholder="The add-on's own model")
+        button = layout.operator("wm.path_open", text="Documentation", icon="HELP")
+        button.filepath = str(Path(__file__).parents[1] / "README.md")
 
 
 def preferences() -> CRF_AddonPreferences:

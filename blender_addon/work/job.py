@@ -125,6 +125,7 @@ class Output:
     folder: Path | None  # for files; None if none is known
     depth: str  # of baked files: "half" or "float"
     overwrite: bool
+    is_composed: bool = False  # whether the compositor puts the render over a plate that it does not show yet
     despite_verdict: bool = False  # whether a response is applied that is not to be trusted
 
 

@@ -44,7 +44,6 @@ NARROW_RANGE = "narrow_range"
 
 #: Each verdict as a sentence about the response, for one-line reports.
 _SENTENCES = {
-    "good": "the response is good",
     "usable": "the response is usable",
     "do not trust": "the response is not to be trusted",
 }
@@ -91,15 +90,16 @@ def _sentence(text: str) -> str:
 
 
 def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
-    """Return whether an estimate is little more than the mean of cameras, though its verdict is good or usable."""
+    """Return whether an estimate is little more than the mean of cameras, though its verdict is usable."""
     return verdict != "do not trust" and NARROW_RANGE in codes
 
 
 def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done.
 
-    Blender cuts lines that are too long in their middle, so warnings are short.
+    Blender cuts lines that are too long in their middle, so names and warnings are short.
     """
+    name = shortened(name)
     if is_loaded(estimate.uncertainty):
         return f"{name}: the response is {estimate.model}; {done}"
     warning = ""
@@ -110,6 +110,11 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     if says_too_little(estimate.verdict.value, [each.code for each in estimate.warnings]):
         sentence = "the response is little more than the mean of cameras"
     return f"{name}: {sentence}{warning}; {done}"
+
+
+def shortened(text: str, most: int = 48) -> str:
+    """Return a name or path of at most so many letters: the middle of a longer one is left out."""
+    return text if len(text) <= most else f"{text[: most // 2 - 2]}...{text[1 - most // 2 :]}"
 
 
 def _first_warning(estimate: ResponseEstimate) -> str:

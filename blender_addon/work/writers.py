@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import OpenImageIO as oiio
+
 from crfnet.configs.derived import write_derived_config
 from crfnet.configs.looks import Look
 from crfnet.configs.plate_color_space import PlateColorSpace
@@ -105,6 +107,7 @@ def _targets(job: Job, folder: Path, sequence: Callable[[], FrameSequence]) -> t
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
     """Write the linear plate, or all its frames; a canceled or failed job leaves the folder as it was."""
     folder = _folder(job)
+    oiio.attribute("debug", 0)  # else the builds of some distributions print what OpenEXR does not store, for each file
     targets = linear_targets(folder / baked_name(job.plate), sequence)
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)

@@ -1,7 +1,5 @@
 """From a photograph to its windows, and from the windows to evidence: all that an estimate needs of the pixels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -102,15 +100,10 @@ def analyze_photographs(
     total, done = sum(len(photograph.samples) for photograph in cut), 0
     analyzed = []
     for photograph in cut:
-        analyzed.append(_analyzed(photograph, network, counted_from(progress, done, total)))
+        predictions = network.predict(photograph.samples, progress=counted_from(progress, done, total))
+        analyzed.append(AnalyzedPhotograph(photograph, predictions.pooled, predictions.windows))
         done += len(photograph.samples)
     return tuple(analyzed)
-
-
-def _analyzed(photograph: CutPhotograph, network: ResponseNetwork, progress: Progress | None) -> AnalyzedPhotograph:
-    """Return the evidence that a network states for a photograph."""
-    predictions = network.predict(photograph.samples, progress=progress)
-    return AnalyzedPhotograph(photograph, predictions.pooled, predictions.windows)
 
 
 def _each(photos: Photographs) -> Iterator[Photo | CutPhotograph]:

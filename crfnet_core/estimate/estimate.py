@@ -3,8 +3,6 @@
 `estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -92,16 +90,16 @@ def estimate_from_evidence(
     photographs = [one.photograph for one in analyzed]
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
-    prior = (prior or Prior.load()).reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
-    if any(origin.names_device for origin in origins):
-        prior = replace(prior, plain=0.0)
+    prior = _informed(prior or Prior.load(), origins, levels)
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     posterior = Posterior.from_evidences(bank, prior, [one.evidence for one in analyzed], independent=independent)
-    makes = tuple(photograph.make for photograph in photographs)
-    is_noise = all(photograph.is_noise for photograph in photographs)
-    log_probability = posterior.families[Family.LOG]
-    recognition = recognize(levels, log_probability=log_probability, is_noise=is_noise, makes=makes, origins=origins)
-    doubts = _doubts(photographs, origins)
+    recognition = recognize(
+        levels,
+        log_probability=posterior.families[Family.LOG],
+        is_noise=all(photograph.is_noise for photograph in photographs),
+        makes=tuple(photograph.make for photograph in photographs),
+        origins=origins,
+    )
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
@@ -110,10 +108,10 @@ def estimate_from_evidence(
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
         families=posterior.families,
-        verdict=_verdict(posterior, recognition, doubts),
+        verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition, doubts, has_own_answer=posterior.answer is not None),
+        warnings=_warnings(photographs, origins, recognition, has_own_answer=posterior.answer is not None),
         model=model,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -129,6 +127,12 @@ def input_warnings(recognition: Recognition | None, origins: Sequence[FileOrigin
     ]
 
 
+def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Prior:
+    """Return the prior shifted by what the files and the user say, and by the levels of log footage."""
+    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
+    return replace(informed, plain=0.0) if any(origin.names_device for origin in origins) else informed
+
+
 def _window_estimates(
     analyzed: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
 ) -> tuple[WindowEstimate, ...]:
@@ -142,32 +146,20 @@ def _window_estimates(
     return tuple(estimates)
 
 
-def _doubts(photographs: Sequence[CutPhotograph], origins: Sequence[FileOrigin]) -> list[Notice]:
-    """Return the reasons that keep an estimate from being good; the expected errors do not show them."""
-    doubts, cameras = [], list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
-    if len(cameras) > 1:
-        doubts.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
-    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        doubts.append(Notice("clipped"))
-    return doubts
-
-
-def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[Notice]) -> Verdict:
-    """Return how far to trust the answer of a posterior."""
-    verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior)
-    return Verdict.USABLE if doubts and verdict is Verdict.GOOD else verdict
-
-
 def _warnings(
     photographs: Sequence[CutPhotograph],
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
-    doubts: Sequence[Notice],
     *,
     has_own_answer: bool,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
-    warnings = [*input_warnings(recognition, origins), *doubts]
+    warnings = input_warnings(recognition, origins)
+    cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
+    if len(cameras) > 1:
+        warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
+    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
+        warnings.append(Notice("clipped"))
     if has_own_answer:
         warnings.append(Notice("answer_of_windows"))
     windows = [window for photograph in photographs for window in photograph.windows]

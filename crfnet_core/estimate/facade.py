@@ -1,7 +1,5 @@
 """The shortest way from a photograph to its response."""
 
-from __future__ import annotations
-
 import os
 from functools import cache
 from typing import Any, BinaryIO

@@ -1,7 +1,5 @@
 """The choices of an analysis, apart from the network and the prior."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from crfnet_core.photograph.metadata import Device

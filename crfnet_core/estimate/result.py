@@ -3,13 +3,11 @@
 docs/estimate.schema.json describes the document. `crfnet estimate` writes it too, with the names of its files.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -47,7 +45,7 @@ class CameraAnswer:
     basis: str  # the measurement that its response rests on, in words
 
     @classmethod
-    def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
+    def from_dict(cls, entry: Mapping[str, Any] | None) -> Self | None:
         """Return the answer in a document; None for an estimate of photographs alone."""
         return None if entry is None else cls(*(entry[field.name] for field in dataclasses.fields(cls)))
 
@@ -139,7 +137,7 @@ class ResponseEstimate(EqualByFields):
         return {name: plain_values(entry) for name, entry in document.items()}
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> ResponseEstimate:
+    def from_dict(cls, document: Mapping[str, Any]) -> Self:
         """Return the estimate in a document that `to_dict` made, or that `crfnet estimate` wrote.
 
         Entries that this version does not know are left out.

@@ -34,7 +34,7 @@ def camera_estimate(camera: Camera) -> ResponseEstimate:
         shape_uncertainty=camera.shape_stops,
         band=band,
         families={},
-        verdict=Verdict.from_errors(camera.shape_stops, error),
+        verdict=Verdict.from_shape_error(camera.shape_stops),
         prior="",
         origins=(),
         warnings=tuple(map(Notice.from_text, camera.warnings)),

@@ -1,11 +1,10 @@
 """Run a trained network on the CPU: windows in, evidence out."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -35,7 +34,7 @@ class ResponseNetwork:
         self._threads = threads
 
     @classmethod
-    def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
+    def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> Self:
         """Return the network in `folder`, by default the packaged one, on the CPU.
 
         Parameters

@@ -1,12 +1,10 @@
 """A model folder: model.onnx, model.json, the model card, and run.json of the training run that it came from."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, get_origin, get_type_hints
+from typing import Any, Self, get_origin, get_type_hints
 
 from crfnet_core.errors import ModelError
 from crfnet_core.files import atomic_write_text, read_bytes, read_json
@@ -19,7 +17,7 @@ MODELS = Path(__file__).parents[1] / "models"
 DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 
 #: Size in bytes of the largest model.onnx that is read.
-MAX_GRAPH_SIZE = 256 * 2**20
+MAX_GRAPH_SIZE = 64 * 2**20
 
 #: Basis and side of the windows that every network is made for, the numbers of weights that its evidence may be about,
 #: and the inputs that it may read.
@@ -50,7 +48,7 @@ class ModelConfig:
     accuracy: dict[str, Any]  # figures of the model card
 
     @classmethod
-    def read(cls, path: str | Path) -> ModelConfig:
+    def read(cls, path: str | Path) -> Self:
         """Return the configuration in a model.json.
 
         Raise ModelError if the file is absent or is not JSON, lacks an entry, or describes a network of another kind.

@@ -4,8 +4,6 @@ Only a network without learned pooling is pooled this way. `inliers` runs for ev
 the windows that agree.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -10,4 +10,13 @@ os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 
 import onnxruntime
 
+#: Bytes of memory for the values of all networks that run in this process.
+MOST_MEMORY = 2 * 2**30
+
+_kind = onnxruntime.OrtAllocatorType.ORT_ARENA_ALLOCATOR
+onnxruntime.create_and_register_allocator(
+    onnxruntime.OrtMemoryInfo("Cpu", _kind, 0, onnxruntime.OrtMemType.DEFAULT),
+    onnxruntime.OrtArenaCfg({"max_mem": MOST_MEMORY}),
+)
+
 __all__ = ["onnxruntime"]

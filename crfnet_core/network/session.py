@@ -1,22 +1,17 @@
 """A graph in onnxruntime, its outputs checked."""
 
-from __future__ import annotations
-
-import re
 from pathlib import Path
+from threading import Timer
 from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import ModelError
+from crfnet_core.network.graph import check_graph
 from crfnet_core.network.model import ModelConfig
 from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.types import Float32Array
-
-#: A tensor whose weights lie in another file has an entry "location"; in Protocol Buffers the last byte of a text's
-#: length, here 8, stands before it.
-_OTHER_FILE = re.compile(rb"[\x00\x08]location")
 
 #: The errors that onnxruntime raises.
 _PROBLEMS: tuple[type[Exception], ...] = (
@@ -30,6 +25,9 @@ _PROBLEMS: tuple[type[Exception], ...] = (
     ),
 )
 
+#: Seconds after which a run ends at its next node, and bytes of the largest constant that is computed at load.
+RUN_SECONDS, MOST_CONSTANT = 30, 2**24
+
 #: Lines that onnxruntime writes to stderr are suppressed below this severity: fatal.
 _FATAL = 4
 
@@ -37,13 +35,12 @@ _FATAL = 4
 class Session:
     """The network of a model folder on one thread of the CPU; threads may share it.
 
-    Raise ModelError if the graph has weights in another file or cannot be loaded.
+    Raise ModelError if the graph is not within the bounds of `check_graph` or cannot be loaded.
     """
 
     def __init__(self, folder: Path, graph: bytes, config: ModelConfig) -> None:
         self._folder, self._config = folder, config
-        if _OTHER_FILE.search(graph):
-            raise ModelError("external_weights", folder=folder)
+        check_graph(folder, graph)
         try:
             self._session = onnxruntime.InferenceSession(
                 graph, _options(config), providers=["CPUExecutionProvider"], enable_fallback=0
@@ -63,11 +60,15 @@ class Session:
         options.log_severity_level = _FATAL
         names, weights = list(self._config.output_names), self._config.components
         shapes = ((weights,), (weights, weights), (len(UNUSUAL),))  # of location, factor and log-odds
+        end = Timer(RUN_SECONDS, setattr, (options, "terminate", True))
         try:
+            end.start()
             read = {self._config.input_name: inputs[:, : self._read]}
             outputs: list[Float32Array] = self._session.run(names, read, options)
         except _PROBLEMS as problem:
             raise ModelError("failing_graph", folder=self._folder, reason=problem) from None
+        finally:
+            end.cancel()
         for number, (name, output) in enumerate(zip(names, outputs, strict=True)):
             shape = (len(inputs) if number < 3 else 1, *shapes[number % 3])
             if output.shape != shape or not np.isfinite(output).all():
@@ -83,4 +84,6 @@ def _options(config: ModelConfig) -> Any:
     if config.reads_statistics:  # to optimize two thousand small operators takes longer than it saves
         options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     options.add_session_config_entry("session.load_model_format", "ONNX")  # not what its first bytes call it
+    options.add_session_config_entry("session.use_env_allocators", "1")  # of bounded memory
+    options.add_session_config_entry("optimization.constant_folding_max_output_size_in_bytes", str(MOST_CONSTANT))
     return options

@@ -1,7 +1,4 @@
-"""Pixels from arrays: check their type, shape and range, and turn them into encoded brightness in [0, 1].
-
-Neither Pillow nor OpenCV is imported: their images are known by NumPy's array interface, Pillow's also by `mode`.
-"""
+"""Pixels from arrays: their type, shape and range are checked, and codes become encoded brightness in [0, 1]."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Read camera raw: the light of the sensor as it stands in the file, and the camera's own JPEG in it.
-
-It needs rawpy (LibRaw), an optional dependency.
-"""
+"""Read camera raw with rawpy (LibRaw): the light of the sensor as it is stored, and the camera's own JPEG in it."""
 
 from __future__ import annotations
 
@@ -19,11 +16,8 @@ from crfnet_core.types import BoolArray, Float32Array, Float64Array
 #: the largest value for it to be the end of the range.
 SATURATED, PILE = 0.985, 1e-4
 
-#: Tag of DNG 1.2: PreviewApplicationName.
-_PREVIEW_PROGRAM = 50966
-
-#: Photosites along both sides of a Bayer pattern.
-_BAYER = (2, 2)
+#: Tag of DNG 1.2: PreviewApplicationName. And the photosites along both sides of a Bayer pattern.
+_PREVIEW_PROGRAM, _BAYER = 50966, (2, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,17 +81,9 @@ def _bayer_light(raw: Any) -> tuple[Float32Array, BoolArray]:
 
 def _developed_light(raw: Any, rawpy: Any) -> tuple[Float32Array, BoolArray]:
     """Return LibRaw's own linear picture at half size, in the camera's colors: for all but Bayer mosaics."""
-    codes = raw.postprocess(
-        half_size=True,
-        gamma=(1, 1),
-        no_auto_bright=True,
-        user_wb=[1, 1, 1, 1],
-        output_color=rawpy.ColorSpace.raw,
-        output_bps=16,
-        user_flip=0,
-        highlight_mode=rawpy.HighlightMode.Clip,
-        adjust_maximum_thr=0,
-    )
+    linear = {"gamma": (1, 1), "no_auto_bright": True, "user_wb": [1, 1, 1, 1], "adjust_maximum_thr": 0}
+    stored = {"output_color": rawpy.ColorSpace.raw, "highlight_mode": rawpy.HighlightMode.Clip, "user_flip": 0}
+    codes = raw.postprocess(half_size=True, output_bps=16, **linear, **stored)
     light = codes[..., :3].astype(np.float32) / 65535
     return light, np.asarray((light >= SATURATED).any(axis=2))
 

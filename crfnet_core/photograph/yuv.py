@@ -1,7 +1,7 @@
 """YUV to RGB (ITU-T H.273, 8.3) for movies and AVIF: exact to half a code, chroma interpolated linearly at its place.
 
-FFmpeg's scaler is as exact for 8 bits only: with 10 bits it is up to 3.5 codes off, it garbles 4:2:0 of odd width, it
-leaves gray in limited range, and it places chroma of 4:2:2 between the luma samples.
+FFmpeg's scaler is up to 3.5 codes off at 10 bits, garbles 4:2:0 of odd width, leaves gray in limited range, and places
+chroma of 4:2:2 between the luma samples.
 """
 
 from __future__ import annotations
@@ -29,11 +29,8 @@ MATRICES = {
     9: ("BT.2020", 0.2627, 0.0593),
 }
 
-#: MatrixCoefficients of RGB, and of a stream that does not say.
-_RGB, _UNSPECIFIED = 0, 2
-
-#: AVColorRange: full, where black is code 0 and white the largest.
-_FULL_RANGE = 2
+#: MatrixCoefficients of RGB, and of a stream that does not say; AVColorRange of full range.
+_RGB, _UNSPECIFIED, _FULL_RANGE = 0, 2, 2
 
 #: Lines from which an untagged video is taken to have the matrix of BT.709, below it BT.601.
 HD_LINES = 720
@@ -62,36 +59,27 @@ class Coding:
 
     @classmethod
     def from_frame(cls, frame: VideoFrame, *, is_still: bool, codes: Sequence[int] = ()) -> Coding | None:
-        """Return the coding of a decoded frame; None if its matrix or its samples are not read.
-
-        `codes` are matrix and range by the container; they override the frame's. For a still picture (JPEG or AVIF),
-        untagged means BT.601 in full range.
-        """
-        form, bits = frame.format, bit_depth(frame)
+        """Return the coding of a decoded frame, by `codes` of its container first; None if its samples are not read."""
+        form, bits, lines = frame.format, bit_depth(frame), frame.height
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
             return None
-        if form.is_rgb or form.has_palette:
-            return cls("RGB", 0.0, 0.0, is_full_range=True, is_centered=False)
         matrix, color_range = codes or (int(frame.colorspace), int(frame.color_range))
-        if len(form.components) < 3:  # gray has no matrix; untagged it is full range, as FFmpeg takes it
-            is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
-            assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()
-            return cls("RGB", 0.0, 0.0, is_full_range=is_full, is_centered=False, assumptions=assumptions)
-        return cls._yuv(matrix, color_range, frame.height, is_still=is_still)
-
-    @classmethod
-    def _yuv(cls, matrix: int, color_range: int, lines: int, *, is_still: bool) -> Coding | None:
-        """Return the coding of luma and chroma."""
-        assumptions = []
-        if matrix in (_UNSPECIFIED, _RGB):
-            matrix = 5 if is_still or lines < HD_LINES else 1
-            assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
-        if color_range == 0:
-            assumptions.append("does not say its range: limited taken")
-        if matrix not in MATRICES:
-            return None
-        is_full = color_range == _FULL_RANGE or (color_range == 0 and is_still)
-        return cls(*MATRICES[matrix], is_full, is_still, () if is_still else tuple(assumptions))
+        is_rgb, is_gray = form.is_rgb or form.has_palette, len(form.components) < 3
+        is_full, assumptions = is_rgb or color_range == _FULL_RANGE, []
+        if is_rgb or is_gray:
+            weights: tuple[str, float, float] | None = ("RGB", 0.0, 0.0)
+        else:
+            if matrix in (_UNSPECIFIED, _RGB):
+                matrix = 5 if is_still or lines < HD_LINES else 1
+                assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
+            weights = MATRICES.get(matrix)
+        if not is_rgb and color_range == 0:  # gray is full range, as FFmpeg takes it
+            is_full = is_still or is_gray
+            assumptions.append(f"does not say its range: {'full taken, as it is gray' if is_gray else 'limited taken'}")
+        if len(form.components) in (2, 4):
+            assumptions.append("does not say how its alpha is meant: colors not multiplied by it taken")
+        centered = is_still and not (is_rgb or is_gray)
+        return weights and cls(*weights, is_full, centered, () if is_still else tuple(assumptions))
 
 
 def bit_depth(frame: VideoFrame) -> int:
@@ -100,10 +88,7 @@ def bit_depth(frame: VideoFrame) -> int:
 
 
 def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
-    """Return the RGB codes of a frame, 0 to `largest` (255 to 65535), rounded, uint8 or uint16, shape (H, W, 3).
-
-    They are not turned upright. Limited range is cut off below black and above white.
-    """
+    """Return the RGB codes of a frame as stored, 0 to `largest` (255 to 65535), rounded, uint8 or uint16, (H, W, 3)."""
     planes = _planes(frame)
     height, width = planes[0].shape
     codes = np.empty((height, width, 3), np.uint8 if largest <= 255 else np.uint16)
@@ -117,10 +102,8 @@ def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
 def alpha_of(frame: VideoFrame) -> Float32Array | None:
     """Return the alpha channel in [0, 1], shape (H, W); None if there is none."""
     planes = _planes(frame)
-    if len(planes) not in (2, 4):
-        return None
-    alpha: Float32Array = np.divide(planes[-1], np.float32(2 ** bit_depth(frame) - 1), dtype=np.float32)
-    return alpha
+    largest = np.float32(2 ** bit_depth(frame) - 1)
+    return np.asarray(np.divide(planes[-1], largest, dtype=np.float32)) if len(planes) in (2, 4) else None
 
 
 def _planes(frame: VideoFrame) -> list[NDArray[Any]]:
@@ -179,10 +162,7 @@ def _rgb(planes: Sequence[NDArray[Any]], rows: NDArray[np.intp], coding: Coding,
 
 
 def _full_size(plane: NDArray[Any], rows: NDArray[np.intp], shape: tuple[int, ...], coding: Coding) -> Float32Array:
-    """Return some rows of a chroma plane at the size of luma; between samples it is interpolated linearly.
-
-    Vertically, chroma of 4:2:0 lies between the lines; horizontally on every second sample, or between them.
-    """
+    """Return some rows of a chroma plane at the size of luma; vertically, its samples lie between those of luma."""
     ratios = [-(-luma // chroma) for luma, chroma in zip(shape, plane.shape, strict=True)]
     first, second, weight = _neighbors(rows, ratios[0], plane.shape[0], is_centered=True)
     lines = _blend(plane[first], plane[second], weight[:, None])

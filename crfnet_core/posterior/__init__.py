@@ -11,16 +11,14 @@
 
 from crfnet_core.posterior.evidence import Evidence, independent_fraction, scene_similarities
 from crfnet_core.posterior.factors import metadata_factors
-from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, UNUSUAL, Family, LikelyKind
+from crfnet_core.posterior.families import IN_CAMERA, UNUSUAL, Family, LikelyKind
 from crfnet_core.posterior.posterior import Posterior
-from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
+from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
 from crfnet_core.posterior.verdict import Verdict
 
 __all__ = [
     "BANK_FILE",
-    "DEFAULT_PRIOR",
-    "FAMILY_WORDS",
     "IN_CAMERA",
     "UNUSUAL",
     "Evidence",
@@ -32,6 +30,5 @@ __all__ = [
     "Verdict",
     "independent_fraction",
     "metadata_factors",
-    "packaged_priors",
     "scene_similarities",
 ]

@@ -1,7 +1,5 @@
 """The evidence of a photograph: the likelihood of each response, as the network reads it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ They are set by hand, for the reasons given; only the probability that a camera'
 was chosen on real photographs (docs/ACCURACY.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,10 +1,9 @@
 """Families of responses: the kinds of tone curves of photographs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 
 class Family(StrEnum):
@@ -54,7 +53,7 @@ class LikelyKind:
     probability: float  # that the response is of this kind
 
     @classmethod
-    def from_probabilities(cls, families: Mapping[Family, float]) -> LikelyKind | None:
+    def from_probabilities(cls, families: Mapping[Family, float]) -> Self | None:
         """Return the most probable kind by the probabilities of families, the first of equals; None without any."""
         if not families:
             return None

@@ -1,10 +1,9 @@
 """The posterior: prior times evidence over the bank; its answer, errors and band."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -40,7 +39,7 @@ class Posterior(EqualByFields):
     @classmethod
     def from_evidences(
         cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
-    ) -> Posterior:
+    ) -> Self:
         """Return prior times evidence, one of each photograph, without which it is the prior: Eq. 24 of docs/METHOD.md.
 
         `independent` is the fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
@@ -52,19 +51,14 @@ class Posterior(EqualByFields):
         if evidences:
             likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
             log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
-            ordinary = bank.ordinary
-            before = logarithms[ordinary]
-            # Among ordinary responses the evidence counts with the prior's exponent; their total probability stays.
-            after = before + prior.evidence * likelihoods[ordinary]
-            logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
-            # Unusual families gain on the average of ordinary responses, as far as lookalikes allow.
-            average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
-            gains = _bounded(log_odds - average, prior.lookalikes)
-            for family, gain in zip(UNUSUAL, gains, strict=True):
-                logarithms[bank.members(family)] += gain
-            unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
-            plain_likelihoods = independent * _plain_log_likelihoods(evidences)
-            plain += _plain_gains(plain, plain_likelihoods, average, prior.lookalikes)
+            before = logarithms[bank.ordinary]
+            average = _log_sum(before + likelihoods[bank.ordinary]) - _log_sum(before)
+            gains = dict(zip(UNUSUAL, _bounded(log_odds - average, prior.lookalikes), strict=True))
+            logarithms = _with_evidence(bank, logarithms, prior.evidence * likelihoods, gains)
+            unexplained += float(gains[Family.UNEXPLAINED])
+            emor = ResponseBank.plain().weights
+            stated = np.sum([evidence.ordinary_log_likelihoods(emor) for evidence in evidences], axis=0)
+            plain += _plain_gains(plain, independent * stated, average, prior.lookalikes)
         explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
@@ -149,6 +143,22 @@ class Posterior(EqualByFields):
         return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
 
 
+def _with_evidence(
+    bank: ResponseBank, logarithms: Float64Array, likelihoods: Float64Array, gains: Mapping[Family, float]
+) -> Float64Array:
+    """Return the log probabilities of responses, (N,), after evidence: its log likelihoods, (N,), and families' gains.
+
+    Among ordinary responses the likelihoods, which have the prior's exponent, move probability, whose total stays.
+    Unusual families gain on the average of ordinary responses.
+    """
+    moved = logarithms.copy()
+    before, after = logarithms[bank.ordinary], logarithms[bank.ordinary] + likelihoods[bank.ordinary]
+    moved[bank.ordinary] = after + _log_sum(before) - _log_sum(after)
+    for family, gain in gains.items():
+        moved[bank.members(family)] += gain
+    return moved
+
+
 def _weighed(
     weights: Float64Array, responses: Float32Array, function: Callable[[Float64Array], Float64Array]
 ) -> Float64Array:
@@ -170,12 +180,6 @@ def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
     Such photographs add to the likelihood of ordinary responses: the odds x become x / (1 - lookalikes + lookalikes x).
     """
     return log_odds - np.logaddexp(np.log1p(-lookalikes), _log(lookalikes) + log_odds)
-
-
-def _plain_log_likelihoods(evidences: Sequence[Evidence]) -> Float64Array:
-    """Return the logarithms of the likelihoods of plain responses, shape (6,), by the evidence of all photographs."""
-    weights = ResponseBank.plain().weights
-    return np.asarray(np.sum([evidence.ordinary_log_likelihoods(weights) for evidence in evidences], axis=0))
 
 
 def _plain_gains(plain: Float64Array, likelihoods: Float64Array, average: float, lookalikes: float) -> Float64Array:

@@ -1,10 +1,9 @@
 """The prior: the probability of each family of responses before a photograph is seen."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.errors import PriorError
 from crfnet_core.files import read_json
@@ -31,7 +30,7 @@ class Prior:
     plain: float = 0.0
 
     @classmethod
-    def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
+    def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Self:
         """Return a packaged prior by its name, or the one in a JSON file.
 
         The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.15, "lookalikes": 0.03}`; families that it leaves
@@ -50,7 +49,7 @@ class Prior:
         return cls._from_entries(path, entries)
 
     @classmethod
-    def _from_entries(cls, path: Path, entries: object) -> Prior:
+    def _from_entries(cls, path: Path, entries: object) -> Self:
         """Return the prior that a JSON file describes; a PriorError if it describes none."""
         if not isinstance(entries, dict) or set(entries) - {"lookalikes", "plain"} != {"shares", "evidence"}:
             raise PriorError("bad_prior", path=path)
@@ -67,7 +66,7 @@ class Prior:
         scaled = {Family(name): share / total for name, share in shares.items()}
         return cls(path.stem, scaled, evidence, lookalikes, plain)
 
-    def reweighted(self, factors: Mapping[Family, float]) -> Prior:
+    def reweighted(self, factors: Mapping[Family, float]) -> Self:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""
         shares = {family: share * factors.get(family, 1.0) for family, share in self.shares.items()}
         total = sum(shares.values())

@@ -20,6 +20,6 @@ The network turns the sums into means: see `training.network.features`.
 Source of (ii): Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004.
 """
 
-from crfnet_core.statistics.cues import COUNTS_OF, CUES, LENGTH, LENGTHS, SHAPES, unpack, window_statistics
+from crfnet_core.statistics.cues import COUNTS_OF, CUES, LENGTH, SHAPES, unpack, window_statistics
 
-__all__ = ["COUNTS_OF", "CUES", "LENGTH", "LENGTHS", "SHAPES", "unpack", "window_statistics"]
+__all__ = ["COUNTS_OF", "CUES", "LENGTH", "SHAPES", "unpack", "window_statistics"]

@@ -5,8 +5,6 @@ ratios agree between the channels, can only be asked of a given response. So it 
 how well each of them does.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

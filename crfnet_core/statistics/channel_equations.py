@@ -9,8 +9,6 @@ The difference between two channels is free of alpha and linear in the curvature
 Least squares over all edges of a window gives normal equations A k = r, which add up over windows.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Samples, Triples

@@ -4,8 +4,6 @@ A new cue is a function of `Samples` and a row at the end of `CUES`; models that
 before it. The network of `training` unpacks the vector with the same table, and docs/METHOD.md prints it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -80,9 +78,8 @@ SHAPES: dict[str, tuple[int, ...]] = {
 
 _ENDS = dict(zip(SHAPES, accumulate(map(math.prod, SHAPES.values())), strict=True))
 
-#: Length of the vector, and the lengths of the first cues together: each may be what a network reads.
-LENGTHS = tuple(_ENDS[COUNTS_OF.get(cue.name, cue.name)] for cue in CUES)
-LENGTH = LENGTHS[-1]
+#: Length of the vector.
+LENGTH = sum(map(math.prod, SHAPES.values()))
 
 
 def window_statistics(window: Float32Array) -> Float32Array:

@@ -1,7 +1,5 @@
 """Edges: where the middle of three samples in a row lies between the outer two."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crfnet_core.statistics.gradients import STRIDES

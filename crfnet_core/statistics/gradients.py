@@ -1,7 +1,5 @@
 """The histogram, and the differences between neighbors at each level of brightness."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -8,8 +8,6 @@ Source: Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image",
 makes light mix linearly; here the network reads how well each candidate does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -4,9 +4,8 @@ Under the true inverse response the logarithm of the ratio of two such samples i
 of docs/METHOD.md). How far it is from equal is summed for each of the candidate responses.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class Pairs:
     difference: Uint8Array
 
     @classmethod
-    def among(cls, row: Row) -> Pairs:
+    def among(cls, row: Row) -> Self:
         """Return the pairs of two samples in a row, each uint8 (3, M)."""
         first, second = row
         low, high = np.minimum(first, second), np.maximum(first, second)

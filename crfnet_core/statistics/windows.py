@@ -1,7 +1,5 @@
 """Choose the windows of a photograph that are analyzed (CRF-net paper, Sec. 3.2)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Signals that end a run: Control-C, and what a render farm or a closed terminal sends."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The `crfnet` command: exit codes and error lines; `crfnet.cli.arguments` parses, `crfnet.cli.commands` works."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

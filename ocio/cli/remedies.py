@@ -3,8 +3,6 @@
 The libraries' sentences (`crfnet_core.messages`, `crfnet.messages`) name no option. `explained` adds the remedy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from crfnet_core.errors import CRFNetError

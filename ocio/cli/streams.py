@@ -1,7 +1,5 @@
 """The streams of the command: complete, able to show every name, and stderr for its own lines alone."""
 
-from __future__ import annotations
-
 import io
 import os
 import sys

@@ -5,8 +5,6 @@ where they lie: the search path of the new config names the folders of the base 
 next to the new config. Nothing of the base is changed, nothing is deleted.
 """
 
-from __future__ import annotations
-
 import copy
 import os
 from collections.abc import Collection, Mapping, Sequence
@@ -15,13 +13,11 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.staging import staged_files
-
 from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
-from ..output_files import check_config_folder, distinct_names, output_folder
+from ..output_files import all_or_none, check_config_folder, distinct_names
 from .file_rules import is_counter_name
 from .files import write_config
 from .looks import Look
@@ -69,7 +65,7 @@ def write_derived_config(
     files = (target, *(folder / name for name in luts))
     if not overwrite and (existing := [path for path in files if os.path.lexists(path)]):
         raise ConfigError("output_exists", path=existing[0])
-    with output_folder(folder), staged_files(folder, overwrite=overwrite) as staged:
+    with all_or_none(files, overwrite=overwrite) as staged:
         for name, lut in luts.items():
             write_lut(staged / name, lut)
         write_config(staged / CONFIG_NAME, config, check=check)

@@ -1,7 +1,5 @@
 """File rules of a config: the files of a plate, by their full names in upper or lower case."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 

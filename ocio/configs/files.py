@@ -1,11 +1,9 @@
 """OpenColorIO config files: load one of bounded size; write one after OpenColorIO has checked it against its LUTs."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +45,8 @@ HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_
 def load_config(path: str | Path) -> OCIO.Config:
     """Return the config in a file of at most `MAX_CONFIG_SIZE` bytes and `MOST_ALIASES` aliases.
 
-    Raise a ConfigError if it is absent, larger, not UTF-8, its variables multiply, or OpenColorIO refuses it.
+    Raise a ConfigError if it is absent, larger, not UTF-8, its variables multiply, a LUT of it is a device or pipe, or
+    OpenColorIO refuses it.
     """
     path = Path(path)
     if not os.path.lexists(path):
@@ -60,6 +59,7 @@ def load_config(path: str | Path) -> OCIO.Config:
         values = {name: config.getEnvironmentVarDefault(name) for name in config.getEnvironmentVarNames()}
         if len(values) > MOST_VARIABLES or not all(_is_bounded(value, values) for value in values.values()):
             raise ConfigError("config_variables", path=path, most=MOST_VARIABLES)
+        _check_files(path, config)
         return config
     except OSError as problem:
         raise ConfigError("config_unreadable", path=path, reason=problem.strerror or problem) from None
@@ -67,6 +67,22 @@ def load_config(path: str | Path) -> OCIO.Config:
         raise ConfigError("config_unreadable", path=path, reason="it is not UTF-8 text") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError("config_refused", path=path, reason=problem) from None
+
+
+def _check_files(path: Path, config: OCIO.Config) -> None:
+    """Refuse a config with a LUT that is not a file, such as a device, which may have no end; absent ones may be."""
+    both = OCIO.COLORSPACE_DIR_TO_REFERENCE, OCIO.COLORSPACE_DIR_FROM_REFERENCE
+    spaces = config.getColorSpaces(OCIO.SEARCH_REFERENCE_SPACE_ALL, OCIO.COLORSPACE_ALL)
+    waiting = [space.getTransform(direction) for space in spaces for direction in both]
+    while waiting:
+        transform = waiting.pop()
+        if isinstance(transform, OCIO.GroupTransform):
+            waiting += transform
+        if isinstance(transform, OCIO.FileTransform):
+            with suppress(OCIO.Exception, OCIO.ExceptionMissingFile):
+                file = Path(config.getCurrentContext().resolveFileLocation(transform.getSrc()))
+                if file.exists() and not file.is_file():
+                    raise ConfigError("config_reads_device", path=path, file=file)
 
 
 def _is_bounded(text: str, values: Mapping[str, str]) -> bool:

@@ -1,7 +1,5 @@
 """The files that an estimate wrote for a plate, read back: its LUT and its color space."""
 
-from __future__ import annotations
-
 import os
 import re
 from dataclasses import dataclass, replace

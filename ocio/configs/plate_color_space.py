@@ -1,12 +1,10 @@
 """The color space of a plate, as plain data (`PlateColorSpace`) and as a part of any OpenColorIO config."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
-from typing import TYPE_CHECKING
+from typing import Self
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -14,6 +12,7 @@ import PyOpenColorIO as OCIO
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 
 from ..errors import ConfigError
+from ..output_files import OutputFiles
 from .file_rules import (
     FAMILY,
     LINEAR_SUFFIX,
@@ -25,9 +24,6 @@ from .file_rules import (
 )
 from .files import plate_exposure
 from .reference_space import linear_space_name, matrix_transform, rec709_to_reference, steps_to_reference
-
-if TYPE_CHECKING:
-    from ..output_files import OutputFiles
 
 #: The category of the spaces of files, by which hosts sort their menus.
 CATEGORIES = ["file-io"]
@@ -68,7 +64,7 @@ class PlateColorSpace:
     @classmethod
     def from_outputs(
         cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
-    ) -> PlateColorSpace:
+    ) -> Self:
         """Return the color space of a photograph, for a config next to the LUTs that an estimate writes.
 
         `file_pattern` is by default the photograph's name, where a frame number at the end (shot.0001.jpg) stands for

@@ -7,8 +7,6 @@ as they are. CG on a linear plate gets the camera's tone curve in this way, and 
 A plate knows no light above its white. The plain view clips it. The other one rolls it off (docs/METHOD.md, Eq. 37).
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A small config for plates, which every host from OpenColorIO 2.0 on can load."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.resources import files
 

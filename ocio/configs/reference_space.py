@@ -1,7 +1,5 @@
 """The linear spaces of any config by their primaries, and from linear Rec.709 to its scene reference space."""
 
-from __future__ import annotations
-
 import numpy as np
 import PyOpenColorIO as OCIO
 

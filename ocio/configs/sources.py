@@ -1,7 +1,5 @@
 """The config that a user names: a file, a name of OpenColorIO's built-in configs, $OCIO, or an installed Blender."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from dataclasses import dataclass

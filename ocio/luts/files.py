@@ -1,7 +1,5 @@
 """Read or write a LUT file; its suffix names the format."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Callable, Mapping
 from pathlib import Path

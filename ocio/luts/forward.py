@@ -1,7 +1,5 @@
 """The response itself as a LUT, from linear light to code values: the inverse of an inverse response."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

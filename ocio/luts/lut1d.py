@@ -1,10 +1,9 @@
 """A one-dimensional lookup table: its values, its interpolation in both directions, and the inverse response."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,7 +86,7 @@ class Lut1D(EqualByFields):
         return table_identity(self.domain, self.values)
 
     @property
-    def channels(self) -> tuple[Lut1D, ...]:
+    def channels(self) -> tuple[Self, ...]:
         """The LUT alone; a LUT with a table for each channel has three."""
         return (self,)
 

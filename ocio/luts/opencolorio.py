@@ -1,7 +1,5 @@
 """LUT files as OpenColorIO reads them, so that a file means here what it means in every host."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

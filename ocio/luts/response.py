@@ -1,7 +1,5 @@
 """The response of a camera from a LUT of its inverse, and from a LUT file of either direction."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

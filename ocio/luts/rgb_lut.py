@@ -1,7 +1,5 @@
 """A 1D LUT for each channel: what calibration from an exposure series gives, where R, G and B are measured apart."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias

@@ -10,18 +10,16 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import OpenImageIO as oiio
 
-from crfnet_core.photograph.orientation import upright
-from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.photo import Photo, upright
 from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 
 from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
 from .library import ffmpeg_line, opened
-from .stream import MovieStream, Picture, decoded_packet, read_stream, video_packets
+from .stream import MovieStream, Picture, decoded_packet, is_shown, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -34,21 +32,15 @@ WHITE = 65535
 
 @dataclass(frozen=True)
 class MovieFrames:
-    """Some frames of a movie, or all, by ascending numbers from 1: a `FrameSource`.
-
-    `missing` holds the numbers that were asked for and that the movie does not have.
-    """
+    """Some frames of a movie, or all, by ascending numbers from 1: a `FrameSource`."""
 
     movie: MovieStream
     numbers: tuple[int, ...]
-    missing: tuple[int, ...] = ()
+    missing: tuple[int, ...] = ()  # asked for, but the movie does not have them
 
     @classmethod
     def find(cls, path: Path, frames: str | Iterable[int] | None = None) -> MovieFrames:
-        """Return the frames of a movie: those asked for, as in `parse_frames`, or all.
-
-        Raise a PlateError if the movie cannot be read, has none of the frames, or `frames` is malformed.
-        """
+        """Return the frames of a movie asked for, as in `parse_frames`, or all; raise a PlateError if it has none."""
         wanted = None if frames is None else parse_frames(frames)
         movie = read_stream(path)
         existing = range(1, movie.frame_count + 1)
@@ -69,32 +61,29 @@ class MovieFrames:
         return replace(self, numbers=numbers, missing=())
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
-        """Yield what returns each frame, for positions that ascend: it is decoded at once, and converted when called.
-
-        A frame that cannot be decoded, or has another form than the first, raises a PlateError when called.
-        """
+        """Yield what returns each frame, or raises a PlateError: it is decoded at once, and converted when called."""
         for number, frame in decoded(self.movie, [self.numbers[position] for position in positions]):
             yield partial(_encoded, self.movie, number, frame)
 
     def photos(self, numbers: Iterable[int]) -> Iterator[tuple[int, Photo]]:
-        """Yield frames with their numbers, ascending, as photographs: codes of the stream's own depth.
-
-        Key frames are decoded alone, if no other frame is asked for. Damaged frames are left out.
-        """
+        """Yield frames, ascending, as photographs of the stream's own depth; damaged ones are left out."""
         wanted = set(numbers)
-        decode = _decoded_keys if wanted <= set(self.movie.key_numbers) else decoded
-        for number, frame in decode(self.movie, wanted):
+        for number, frame in decoded(self.movie, wanted, keys_only=wanted <= set(self.movie.key_numbers)):
             if frame is not None:
                 yield number, _photo(self.movie, number, frame)
 
 
-def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, VideoFrame | None]]:
+def decoded(
+    movie: MovieStream, numbers: Iterable[int], *, keys_only: bool = False
+) -> Iterator[tuple[int, VideoFrame | None]]:
     """Yield frames, ascending by number from 1, each once; None for a frame that is damaged or absent."""
     pending = sorted(set(numbers), reverse=True)
     if not pending:
         return
     with opened(movie.path) as (container, stream):
-        for number, frame in enumerate(_in_order(container, stream), 1):
+        if keys_only and movie.start > -inf:  # else only counting all frames gives their numbers
+            stream.codec_context.skip_frame = "NONKEY"
+        for number, frame in enumerate(_in_order(movie, container, stream), 1):
             if number == pending[-1]:
                 yield pending.pop(), frame
             if not pending:
@@ -102,54 +91,38 @@ def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, V
     yield from ((number, None) for number in reversed(pending))
 
 
-def _in_order(container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
-    """Yield all frames as shown; None for each that is damaged or may be predicted from a damaged one.
+def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
+    """Yield all frames as shown; None for each that is lost, damaged, or may be predicted from a damaged one.
 
-    A packet that cannot be decoded has its place by its time. What follows it in the file up to the next key frame is
+    The packets' times say which frames are lost. All that follow damage in the file, up to the next key frame, are
     taken for damaged, as decoders predict from what they have.
     """
-    damaged: list[int] = []
-    order: dict[int | None, int] = {}
-    lost = inf  # the place in the file of the first damage since the last key frame
-    for index, packet in enumerate(container.demux(stream)):
-        frames, order[packet.pts] = decoded_packet(packet), index
-        if frames is None:
-            lost = min(lost, index)
-            if packet.pts is not None and not packet.is_discard:
-                insort(damaged, packet.pts)
-        for frame in frames or ():
-            while damaged and frame.pts is not None and damaged[0] < frame.pts:
-                damaged.pop(0)
-                yield None
-            place = order.pop(frame.pts, index)
+    pending: list[tuple[int, int, int]] = []  # the frames to come, in the order shown: clock, time, place in the file
+    clock, last = 0, None  # and the time in the file; whenever it runs back, another one begins
+    damaged_from = inf  # the place of the first damage since the last key frame
+    for place, packet in enumerate(container.demux(stream)):
+        if packet.dts is not None:
+            clock, last = clock + (last is not None and packet.dts < last), packet.dts
+        time = packet.pts if movie.start > -inf else None
+        if time is not None and is_shown(packet) and (clock or time >= movie.start):
+            insort(pending, (clock, time, place))
+        frames, is_damaged = decoded_packet(stream, packet)
+        if is_damaged:
+            damaged_from = min(damaged_from, place)
+        if is_damaged and not frames and time is None:
+            yield None
+        for frame in frames:
+            times = [time for _, time, _ in pending]
+            index = times.index(frame.pts) if frame.pts in times else -1
+            origin = pending[index][2] if index >= 0 else place
+            yield from [None] * index
+            del pending[: index + 1]
             if frame.is_corrupt:
-                lost = min(lost, place)
-            elif frame.key_frame and place > lost:
-                lost = inf
-            yield None if frame.is_corrupt or place > lost else frame
-    yield from (None for _ in damaged)
-
-
-def _decoded_keys(movie: MovieStream, numbers: set[int]) -> Iterator[tuple[int, VideoFrame | None]]:
-    """Yield key frames, ascending by number, each decoded alone; None for one that is damaged."""
-    with opened(movie.path) as (container, stream):
-        stream.codec_context.skip_frame = "NONKEY"
-        keys = (packet for packet in video_packets(container, stream) if packet.is_keyframe)
-        for number, packet in zip(movie.key_numbers, keys, strict=False):
-            if number in numbers:
-                yield number, _decoded_alone(stream, packet)
-
-
-def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
-    """Return the frame of a packet; None if it is damaged."""
-    import av
-
-    try:
-        frames = [*packet.decode(), *stream.decode(None)]  # without a next packet the decoder hands it out
-    except av.FFmpegError:
-        frames = []
-    stream.codec_context.flush_buffers()
-    return frames[0] if frames and not frames[0].is_corrupt else None
+                damaged_from = min(damaged_from, origin)
+            elif frame.key_frame and origin > damaged_from:
+                damaged_from = inf
+            yield None if origin >= damaged_from else frame
+    yield from [None] * len(pending)
 
 
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
@@ -187,12 +160,7 @@ def _frame_header(movie: MovieStream) -> Any:
 def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
     """Return a frame as a photograph, upright."""
     _check_form(movie, number, frame)
-    largest = 2**movie.bit_depth - 1
-    codes = upright(rgb_codes(frame, movie.picture.coding, largest), movie.picture.turn)
-    return Photo(
-        pixels=np.divide(codes, np.float32(largest), dtype=np.float32),
-        bit_depth=movie.bit_depth,
-        is_gray=bool((codes == codes[..., :1]).all()),
-        path=movie.path.with_name(f"{movie.path.name} frame {number}"),
-        metadata=movie.file_metadata,
-    )
+    codes = upright(rgb_codes(frame, movie.picture.coding, 2**movie.bit_depth - 1), movie.picture.turn)
+    name = str(movie.path.with_name(f"{movie.path.name} frame {number}"))
+    metadata = movie.file_metadata
+    return Photo.from_array(codes, color_order="RGB", bit_depth=movie.bit_depth, name=name, metadata=metadata)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 import shlex
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,22 +34,18 @@ SIGNATURES = (
 #: Distances in bytes between the sync bytes of an MPEG transport stream, and the place of the first one.
 _TRANSPORT = ((188, 0), (192, 4))
 
-#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display.
-IPT_PROFILE = 5
-
-#: Seconds after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
-OPENING = 60
+#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display. And the seconds
+#: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
+IPT_PROFILE, OPENING = 5, 60
 
 
 def is_movie(path: Path) -> bool:
     """Return whether a file is a movie, by its first bytes; False for a pipe and for unreadable files."""
-    try:
-        if not path.is_file():
-            return False
-        with path.open("rb") as file:
-            head = file.read(600)
-    except (OSError, ValueError):
-        return False
+    head = b""
+    with suppress(OSError, ValueError):
+        if path.is_file():
+            with path.open("rb") as file:
+                head = file.read(600)
     if head[4:8] in QUICKTIME_BOXES:
         return not (head[4:8] == b"ftyp" and head[8:12] in STILL_BRANDS)
     if head.startswith(b"RIFF"):
@@ -57,34 +55,52 @@ def is_movie(path: Path) -> bool:
     )
 
 
+def has_cut_riff(path: Path) -> bool:
+    """Return whether a file ends before one of its RIFF chunks, of which an AVI file has one or more, does."""
+    end, size = 0, path.stat().st_size
+    with path.open("rb") as file:
+        while (head := file.read(8)).startswith(b"RIFF"):
+            end += 8 + int.from_bytes(head[4:], "little")
+            file.seek(end)
+    return end > size
+
+
 def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
-    pattern = path.with_name(path.stem.replace("%", "_") + ".%04d.png")
-    filtered = ["-vf", filters] if filters else []
-    command = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
-    return shlex.join(command)
+    pattern, filtered = path.with_name(path.stem.replace("%", "_") + ".%04d.png"), ["-vf", filters] if filters else []
+    line = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
+    return shlex.join(line)
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
-    """Yield a movie, opened, and the video stream that FFmpeg ranks best: not a cover or a thumbnail.
-
-    Raise a PlateError if PyAV is absent, the file is not a movie or holds no video, or something in the block cannot be
-    decoded.
-    """
+    """Yield a movie and its best video stream, not a cover; a PlateError if the block cannot open or decode it."""
     try:
         import av
     except ImportError:
         raise PlateError("pyav_missing", path=path, line=ffmpeg_line(path)) from None
+    _capture_errors()
     try:
         with av.open(f"file:{path}", metadata_errors="replace", timeout=(OPENING, None)) as container:
             stream = container.streams.best("video")
             if not isinstance(stream, av.VideoStream) or stream.codec_context is None:
                 raise PlateError("no_video", path=path)
-            stream.thread_type = "SLICE"  # threads by frame would report an error at another frame
+            stream.codec_context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
+            if stream.codec_context.codec.canonical_name == "hevc":  # else it passes over errors within a frame
+                stream.codec_context.options = {"err_detect": "crccheck+explode"}
             yield container, stream
     except (av.FFmpegError, UnicodeDecodeError) as problem:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
+
+
+@cache
+def _capture_errors() -> None:
+    """Let `av.logging.Capture` get FFmpeg's errors; others go to Python's logging, and by default nowhere."""
+    import av.logging
+
+    logging.getLogger("libav").addHandler(logging.NullHandler())
+    av.logging.set_level(av.logging.ERROR)
+    av.logging.set_skip_repeated(False)
 
 
 def dolby_vision_profile(stream: VideoStream) -> int:

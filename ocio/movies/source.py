@@ -20,17 +20,12 @@ from .stream import MovieStream
 #: Frames of a movie, the files of a sequence, or a single file: each a `FrameSource`.
 PlateSource = FrameSequence | MovieFrames
 
-#: Where in each part of the movie a frame is looked for, in turn.
-PLACES = (0.5, 0.7, 0.9)
+#: Where in each part of the movie a frame is looked for, in turn, and the samples along its longer side that count.
+PLACES, SAMPLES = (0.5, 0.7, 0.9), 96
 
-#: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there.
-DARK, LIGHT, FRACTION = 0.08, 0.98, 0.1
-
-#: Least mean difference in brightness between two frames; two that differ less show the same picture.
-DIFFERENCE = 0.01
-
-#: Samples along the longer side of a frame by which it is judged.
-SAMPLES = 96
+#: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there; and the
+#: least mean difference in brightness between two frames that do not show the same picture.
+DARK, LIGHT, FRACTION, DIFFERENCE = 0.08, 0.98, 0.1, 0.01
 
 
 def find_source(pattern: str | Path, frames: str | Iterable[int] | None = None) -> PlateSource:
@@ -50,10 +45,7 @@ def movie_of(source: PlateSource) -> MovieStream | None:
 
 
 def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
-    """Yield up to `FRAMES_ANALYZED` photographs, spread over a source, each behind a source of it alone.
-
-    One is in memory at a time. Raise a PhotoError if one cannot be read.
-    """
+    """Yield up to `FRAMES_ANALYZED` photographs, spread over a source, each behind a source of it alone."""
     if isinstance(source, MovieFrames):
         return ((source.only(number), photo) for number, photo in chosen_photos(source))
     return ((FrameSequence((path,)), read_photo(path)) for path in sample_frames(source))
@@ -62,16 +54,17 @@ def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
 def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator[tuple[int, Photo]]:
     """Yield up to `count` frames for an estimate, one at a time, ascending, each with its number.
 
-    They are key frames if there are enough, which are decoded alone and have the best quality. Of each of `count`
-    parts, the first of the frames at `PLACES` is taken that is not nearly black or white and shows something new. If
-    none passes, the middle ones are taken. Raise a PlateError if none of these can be decoded.
+    They are key frames if there are enough, which have the best quality. Of each of `count` parts, the first at
+    `PLACES` is taken that is not nearly black or white and shows something new; the middle ones if none does. Raise a
+    PlateError if none of these can be decoded.
     """
     keys = sorted(set(frames.numbers) & set(frames.movie.key_numbers))
     parts = [part.tolist() for part in np.array_split(keys if len(keys) >= count else frames.numbers, count)]
     candidates = {part[int(place * len(part))]: index for index, part in enumerate(parts) if part for place in PLACES}
     seen: dict[int, Float32Array] = {}
     for number, photo in frames.photos(candidates):
-        glimpse, part = _glimpse(photo), candidates[number]
+        step, part = max(1, max(photo.shape[:2]) // SAMPLES), candidates[number]
+        glimpse = photo[::step, ::step].mean(axis=2)
         is_new = all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in seen.values())
         if part not in seen and is_new and ((glimpse > DARK) & (glimpse < LIGHT)).mean() >= FRACTION:
             seen[part] = glimpse
@@ -88,10 +81,3 @@ def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Itera
         yield number, photo
     if is_empty:
         raise undecodable(frames.movie.path, "none of its frames")
-
-
-def _glimpse(photo: Photo) -> Float32Array:
-    """Return a coarse pick of a frame's brightness, the mean of the channels, shape (h, w)."""
-    step = max(1, max(photo.shape[:2]) // SAMPLES)
-    glimpse: Float32Array = photo[::step, ::step].mean(axis=2)
-    return glimpse

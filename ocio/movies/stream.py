@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from math import inf, isnan, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -15,34 +16,41 @@ from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
-from crfnet_core.photograph.orientation import UPRIGHT, Turn
+from crfnet_core.photograph.photo import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
-from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, opened, undecodable
+from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, has_cut_riff, opened, undecodable
 
 if TYPE_CHECKING:
     from av import VideoFrame
     from av.container import InputContainer
     from av.video.stream import VideoStream
 
-#: The time of a frame, in the time base of its stream, and whether it is a key frame.
-Entry: TypeAlias = tuple[int | None, bool]
+#: The time of a frame in the time base of its stream, nan if unknown, and whether it is a key frame.
+Entry: TypeAlias = tuple[float, bool]
 
 #: Matrix, range, primaries and transfer: code points of ITU-T H.273, but the range is FFmpeg's; and of none.
 ColorCodes: TypeAlias = tuple[int, ...]
 UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 
-#: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full.
-JPEG_CODECS = ("mjpeg", "mjpegb")
+#: Words of the messages of FFmpeg's decoders about damage that they fill in, and of its demuxers about files cut short.
+DAMAGE, CUT = ("CRC mismatch", "damaged", "error while decoding"), ("partial file", "ended prematurely")
 
-#: Codecs as people know them; others by FFmpeg's name.
+#: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
+MATROSKA, AVI = "matroska,webm", "avi"
+
+#: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full. Codecs as people
+#: know them; others by FFmpeg's name.
+JPEG_CODECS = ("mjpeg", "mjpegb")
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
 
 #: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one present counts.
-MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
-MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
-FIRMWARE = ("com.apple.quicktime.software",)
+CAMERA = (
+    ("com.apple.quicktime.make", "com.android.manufacturer", "make"),
+    ("com.apple.quicktime.model", "com.android.model", "model"),
+    ("com.apple.quicktime.software",),
+)
 
 #: Metadata by FFmpeg's names, in lower case -> a text in it -> the log curve that it names.
 LOG_TAGS = {
@@ -94,9 +102,11 @@ class MovieStream:
     rate: Fraction  # frames per second on average; 0 if unknown
     color: ColorTags
     metadata: Mapping[str, str]  # of the file and of its video, by FFmpeg's names in lower case
-    frame_count: int
+    frame_count: int  # of a file that is cut short one more, which cannot be decoded
     key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
     container: ColorCodes  # of the container, which count where the frames do not state theirs
+    start: float  # the time of the first frame, in the time base of its stream; -inf if times are unknown
+    is_cut: bool = False
 
     def __str__(self) -> str:
         """Return one line for people: the movie, and the values taken for properties that it does not state."""
@@ -109,6 +119,7 @@ class MovieStream:
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
             interlaced if self.picture.is_interlaced else "",
+            "the file is cut short: copy it again" if self.is_cut else "",
             "its alpha is left out" if self.metadata.get("alpha_mode") == "1" else "",  # of VP8 and VP9, not decoded
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
@@ -116,39 +127,20 @@ class MovieStream:
     @property
     def file_metadata(self) -> FileMetadata:
         """The metadata as a photograph's file has it."""
-        width, height = self.picture.size
-        make, model, software = map(self._text, (MAKES, MODELS, FIRMWARE))
-        return FileMetadata(
-            width=width,
-            height=height,
-            make=make,
-            model=model,
-            software=software,
-            file_format="movie",
-            color=self.color,
-        )
-
-    def _text(self, names: tuple[str, ...]) -> str:
-        """Return the first metadata present, on one line of printable characters."""
-        return one_line(next((self.metadata[name][:LONGEST_TEXT] for name in names if name in self.metadata), ""))
+        found = (next((self.metadata[name] for name in names if name in self.metadata), "") for names in CAMERA)
+        make, model, software = (one_line(text[:LONGEST_TEXT]) for text in found)
+        return FileMetadata(*self.picture.size, make, model, software, file_format="movie", color=self.color)
 
 
 def check_progressive(movie: MovieStream) -> None:
-    """Raise a PlateError, with the line by which FFmpeg deinterlaces, if the frames of a movie hold two fields.
-
-    How they become one picture is the user's to choose.
-    """
+    """Raise a PlateError if frames hold two fields: how they become one picture is the user's to choose."""
     if movie.picture.is_interlaced:
         line = ffmpeg_line(movie.path, filters="bwdif=send_frame")
         raise PlateError("movie_interlaced", path=movie.path, line=line)
 
 
 def read_stream(path: Path) -> MovieStream:
-    """Return the description of a movie; reads it to its end, but decodes the first frame only.
-
-    Raise a PlateError if PyAV is absent, or the movie is damaged, too large, or codes its pictures in a way that is not
-    read.
-    """
+    """Return the description of a movie, read to its end, or refuse it; only the first frame is decoded."""
     with opened(path) as (container, stream):
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:
@@ -156,25 +148,35 @@ def read_stream(path: Path) -> MovieStream:
         if dolby_vision_profile(stream) == IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         codes = _color_codes(context)  # decoding overwrites them
-        packets, frame = _survey(container, stream)
+        packets, frame, problems = _survey(container, stream)
+        is_cut = any(words in problem for words in CUT for problem in problems) or has_cut_riff(path)
+        if problems and not is_cut and container.format.name == MATROSKA:  # it passes over frames that it cannot find
+            raise undecodable(path, problems[0])
         if frame is None:
             raise undecodable(path, "it holds no frame")
-        return _described(path, container, stream, _shown(packets, frame), frame, codes)
+        movie = _described(path, container, stream, packets, frame, codes)
+        return replace(movie, frame_count=movie.frame_count + is_cut, is_cut=is_cut)
 
 
-def video_packets(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
-    """Yield the packets of a stream that belong to shown frames, in the order of the file."""
-    return (packet for packet in container.demux(stream) if packet.size and not packet.is_discard)
+def is_shown(packet: Any) -> bool:
+    """Return whether a packet holds a frame that is shown."""
+    return bool(packet.size) and not packet.is_discard
 
 
-def decoded_packet(packet: Any) -> list[Any] | None:
-    """Return the frames that a packet completes; None if it is damaged, as FFmpeg passes it over."""
+def decoded_packet(stream: VideoStream, packet: Any) -> tuple[list[VideoFrame], bool]:
+    """Return the frames that a packet completes, None for the last ones, and whether it is damaged.
+
+    Containers mark parts that are cut or lost; decoders raise, or log damage and fill it in from other frames.
+    """
     import av
 
-    try:
-        return list(packet.decode())
-    except av.FFmpegError:
-        return None
+    with av.logging.Capture() as messages:
+        try:
+            frames = list(stream.decode(packet))
+        except av.FFmpegError:
+            return [], True
+    is_named = any(words in message for words in DAMAGE for _, _, message in messages)
+    return frames, is_named or bool(packet and packet.is_corrupt)
 
 
 def stated_codes(frame: VideoFrame, container: ColorCodes) -> ColorCodes:
@@ -188,36 +190,33 @@ def _color_codes(source: Any) -> ColorCodes:
     return int(source.colorspace), int(source.color_range), int(source.color_primaries), int(source.color_trc)
 
 
-def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None]:
-    """Return the time of each frame and whether it is a key frame, in the order of the file, and the first frame."""
+def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None, list[str]]:
+    """Return the entries of all frames in the order of the file, the first frame, and the errors of the container."""
+    import av
+
     packets, first = [], None
-    for packet in container.demux(stream):
-        if first is None:
-            first = next(iter(decoded_packet(packet) or ()), None)
-        if packet.size and not packet.is_discard:
-            packets.append((packet.pts, packet.is_keyframe))
-    return packets, first
+    with av.logging.Capture() as messages:
+        for packet in container.demux(stream):
+            if first is None:
+                first = next(iter(decoded_packet(stream, packet)[0]), None)
+            if is_shown(packet):
+                packets.append((nan if packet.pts is None else packet.pts, packet.is_keyframe))
+    return packets, first, [one_line(message) for _, name, message in messages if name == container.format.name]
 
 
-def _shown(packets: Sequence[Entry], first: VideoFrame) -> list[Entry]:
-    """Return the entries without frames at the start that refer to pictures before the first key frame."""
-    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
-    end = keys[1] if len(keys) > 1 else len(packets)
-    return [entry for entry in packets[:end] if not _is_before(entry[0], first.pts)] + list(packets[end:])
+def _start(packets: Sequence[Entry], first: VideoFrame) -> float:
+    """Return the time of the first frame: pictures that refer to others before the first key frame have none."""
+    times = [next((time for time, is_key in packets if is_key), nan), nan if first.pts is None else first.pts]
+    return min((time for time in times if not isnan(time)), default=-inf)
 
 
 def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
     """Return the numbers of the key frames: their places in the file, behind the frames shown before them."""
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     return tuple(
-        start + 1 + sum(_is_before(time, packets[start][0]) for time, _ in packets[start:end])
+        start + 1 + sum(time < packets[start][0] for time, _ in packets[start:end])
         for start, end in pairwise([*keys, len(packets)])
     )
-
-
-def _is_before(time: int | None, other: int | None) -> bool:
-    """Return whether both times are known and the first is earlier."""
-    return time is not None and other is not None and time < other
 
 
 def _described(
@@ -230,6 +229,10 @@ def _described(
 ) -> MovieStream:
     """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
+    start = -inf if container.format.name == AVI else _start(packets, frame)
+    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
+    end = keys[1] if len(keys) > 1 else len(packets)  # from there on, the clock may run back
+    packets = [entry for entry in packets[:end] if not entry[0] < start] + packets[end:]
     parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
     metadata = {key.lower(): value for part in parts for key, value in part.items()}
     picture = Picture.from_frame(path, frame, codec, codes)
@@ -246,6 +249,7 @@ def _described(
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
         container=codes,
+        start=start,
     )
 
 
@@ -260,13 +264,10 @@ def _color_tags(codes: ColorCodes, metadata: Mapping[str, str]) -> ColorTags:
 
 
 def _turn(path: Path, frame: VideoFrame) -> Turn:
-    """Return the turn of the display matrix; as stored for other angles than quarter turns.
-
-    PyAV reads no side data of a frame that has any of a kind it does not know, such as EXIF, but gives the angle.
-    """
+    """Return the turn of the display matrix; as stored for other angles than quarter turns."""
     try:
         matrix: Any = frame.side_data.get("DISPLAYMATRIX")
-    except ValueError:
+    except ValueError:  # of side data that PyAV does not know, such as EXIF; it still gives the angle
         if frame.rotation:
             raise undecodable(path, "its frames are turned, and PyAV does not say whether mirrored, too") from None
         matrix = None

@@ -21,9 +21,8 @@ from ..luts.files import write_lut
 from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
-from ..output_files import OutputFiles
+from ..output_files import OutputFiles, all_or_none
 from ..report import Measured, calibration_document, calibration_provenance
-from .delivery import all_or_none
 from .plan import OutputPlan, plan_files
 
 
@@ -58,16 +57,16 @@ def write_calibration(plan: OutputPlan, calibration: Measured, comparison: Compa
     lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
     document = calibration_document(calibration, plan.files, comparison)
     with all_or_none([*plan.files.unshared, plan.files.config], overwrite=plan.plates.overwrite) as folder:
-        files = plan.files.in_folder(folder)
+        files = plan.files
         for path in files.luts:
-            write_lut(path, lut)
+            write_lut(folder / path.name, lut)
         if files.sheet:
             from ..report.calibration_sheet import draw_calibration  # loads matplotlib: optional, and slow
 
-            draw_calibration(files.sheet, calibration)
-        atomic_write_text(files.report, json_text(document), error=PlateError)
+            draw_calibration(folder / files.sheet.name, calibration)
+        atomic_write_text(folder / files.report.name, json_text(document), error=PlateError)
         spaces = [plan.space] if plan.space else []
-        write_config(files.config, portable_config(spaces), check={files.color_space: lut})
+        write_config(folder / files.config.name, portable_config(spaces), check={files.color_space: lut})
     return document
 
 

@@ -5,16 +5,14 @@ The command and the add-on write with `deliver`: all files of a plan appear toge
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.colorimetry import REC709
-from crfnet_core.files import atomic_write_text, check_target, json_text
-from crfnet_core.staging import staged_files
+from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.types import Progress
 
 from ..configs.files import write_config
@@ -24,7 +22,7 @@ from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
 from ..options import PlateOptions
-from ..output_files import OutputFiles, check_config_folder, check_folder, output_folder
+from ..output_files import all_or_none, check_config_folder
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
@@ -76,27 +74,28 @@ def deliver(
     if plan.space:
         check_config_folder(plan.files.config.parent)
     with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
-        files = plan.files.in_folder(folder)
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
-        linear = pool.submit(_write_linear, files.linear, sources, light, plan.plates, linearize, progress)
-        _write_luts(files, plan, light)
+        frames = [folder / path.name for path in plan.files.linear]
+        linear = pool.submit(_write_linear, frames, sources, light, plan.plates, linearize, progress)
+        _write_luts(folder, plan, light)
         for path, write in more.items():
             write(folder / path.name)
         linear.result()
     return written
 
 
-def _write_luts(files: OutputFiles, plan: OutputPlan, light: PlateLight) -> None:
+def _write_luts(folder: Path, plan: OutputPlan, light: PlateLight) -> None:
     """Write the LUTs and the config that a plan has."""
+    files = plan.files
     for path in files.luts if plan.lut_length else ():
-        write_lut(path, light.lut)
+        write_lut(folder / path.name, light.lut)
     if files.forward:
         forward = forward_lut(light.lut)
         for path in files.forward:
-            write_lut(path, forward)
+            write_lut(folder / path.name, forward)
     if plan.space:
         config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
-        write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
+        write_config(folder / files.config.name, config, check={files.color_space: light.lut.channels[0]})
 
 
 def _write_linear(
@@ -123,22 +122,6 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
 
     first = estimated.photographs[0]
     draw_sheet(path, first.preview, estimated.estimate, stride=first.stride)
-
-
-@contextmanager
-def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
-    """Yield the folder that a block writes files to; they take their names together or not at all."""
-    folder = targets[0].parent
-    check_folder(folder)
-    with ExitStack() as stack:
-        try:
-            stack.enter_context(output_folder(folder))
-            for target in targets:
-                check_target(target, overwrite=overwrite)
-            temporary = stack.enter_context(staged_files(folder, overwrite=overwrite))
-        except OSError as problem:  # such as on Windows, which does not say before what is not allowed
-            raise PlateError("folder_not_written", path=folder, reason=problem.strerror or problem) from problem
-        yield temporary
 
 
 def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:

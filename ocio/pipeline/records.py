@@ -18,7 +18,7 @@ import numpy as np
 
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.files import parse_json
-from crfnet_core.locks import lock, unlock
+from crfnet_core.locks import lock
 
 from ..errors import PlateError
 from ..plates.primaries import PlatePrimaries
@@ -104,10 +104,7 @@ class RecordFile:
         """Open the file for appending, with no other process in such a block meanwhile."""
         with self.path.open("a+b") as file:
             lock(file)
-            try:
-                yield file
-            finally:
-                unlock(file)
+            yield file
 
 
 def _drop_cut_line(file: BinaryIO) -> None:

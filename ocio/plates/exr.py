@@ -22,34 +22,20 @@ from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
 COPIED_METADATA = (
-    "DateTime",
-    "Exif:ExposureBiasValue",
-    "Exif:FocalLength",
-    "Exif:ISOSpeedRatings",
-    "Exif:LensModel",
-    "Exif:PhotographicSensitivity",
-    "ExposureTime",
-    "FNumber",
-    "FramesPerSecond",
-    "Make",
-    "Model",
-    "Orientation",
-    "PixelAspectRatio",
-    "smpte:KeyCode",
-    "smpte:TimeCode",
+    *("DateTime", "Exif:ExposureBiasValue", "Exif:FocalLength", "Exif:ISOSpeedRatings", "Exif:LensModel"),
+    *("Exif:PhotographicSensitivity", "ExposureTime", "FNumber", "FramesPerSecond", "Make", "Model", "Orientation"),
+    *("PixelAspectRatio", "smpte:KeyCode", "smpte:TimeCode"),
 )
 
 #: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
 #: other standard attributes OpenImageIO names itself: expTime, aperture, capDate, framesPerSecond, timeCode, keyCode.
 STANDARD_NAMES = {
-    "cameraMake": ("Make",),
-    "cameraModel": ("Model",),
-    "lensModel": ("Exif:LensModel",),
-    "nominalFocalLength": ("Exif:FocalLength",),
-    "isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings"),
+    **{"cameraMake": ("Make",), "cameraModel": ("Model",), "lensModel": ("Exif:LensModel",)},
+    **{"nominalFocalLength": ("Exif:FocalLength",)},  # in millimeters
+    **{"isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings")},
 }
 
-#: The numbers among them, in millimeters and as ISO arithmetic speed.
+#: The numbers among them.
 STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 
 #: NumPy's types of the two depths.
@@ -62,11 +48,7 @@ ATTRIBUTE = re.compile(rb"[^\0]+\0[^\0]+\0(.{4})", re.DOTALL)
 def linear_header(
     source: Any, *, channels: int, depth: str, attributes: Mapping[str, str | float | tuple[float, ...]]
 ) -> Any:
-    """Return the OpenImageIO header of a linear plate of 3 channels, or 4 with alpha; `depth` is half or float.
-
-    The size, the windows and the `COPIED_METADATA` come from `source`, the header of the encoded plate; `attributes`
-    say what the values mean, as in `PlateLight.attributes`.
-    """
+    """Return the header of a linear plate of 3 or 4 channels, with `COPIED_METADATA` of `source`, the encoded plate."""
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
         setattr(header, name, getattr(source, name))
@@ -78,31 +60,21 @@ def linear_header(
             value = one_line(value) if isinstance(value, str) else value
             header.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
     header.attribute("compression", "zips")
-    for name, value in {**_standard_attributes(header), **attributes}.items():
+    standard: dict[str, str | float] = {}
+    for name, others in STANDARD_NAMES.items():
+        found = next((value for other in others if (value := header.getattribute(other))), None)
+        if found is not None:
+            standard[name] = float(found) if name in STANDARD_NUMBERS else str(found)
+    for name, value in {**standard, **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
-        elif isinstance(value, str):  # OpenImageIO takes nothing that is not Unicode
-            header.attribute(name, value.encode(errors="replace").decode())
-        else:
-            header.attribute(name, value)
+        else:  # OpenImageIO takes nothing that is not Unicode
+            header.attribute(name, value.encode(errors="replace").decode() if isinstance(value, str) else value)
     return header
 
 
-def _standard_attributes(header: Any) -> dict[str, str | float]:
-    """Return the metadata in a header that OpenEXR itself has names for, by these names."""
-    attributes: dict[str, str | float] = {}
-    for name, others in STANDARD_NAMES.items():
-        value = next((value for other in others if (value := header.getattribute(other))), None)
-        if value is not None:
-            attributes[name] = float(value) if name in STANDARD_NUMBERS else str(value)
-    return attributes
-
-
 def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:
-    """Write float16 or float32 pixels, shape (H, W, 3 or 4), as an OpenEXR file with the header of `linear_header`.
-
-    Raise a PlateError that calls the file `name` if it is not whole, for example because the disk is full.
-    """
+    """Write pixels, (H, W, 3 or 4), as an OpenEXR file; raise a PlateError that calls it `name` if it is not whole."""
     output = oiio.ImageOutput.create(str(path))
     problem = oiio_message()
     if output is None:
@@ -119,9 +91,8 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
 def _is_whole(path: Path, header: Any) -> bool:
     """Return whether the chunks of a file fill it without a gap: OpenEXR reports no error of its last writes.
 
-    With zips compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table
-    of their places last, over zeros. Only the leaders are read, and the last data, whose checksum zlib verifies.
-    Source: "OpenEXR File Layout", sections "Header", "Chunk Offset Table" and "Chunk Layout".
+    With zips compression each scanline is a chunk: its y, the size of its data, and the data ("OpenEXR File Layout").
+    The table of their places is written last, over zeros. zlib verifies the checksum of the last data.
     """
     try:
         with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:

@@ -20,14 +20,11 @@ from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
 
-#: Names of the one channel of a gray picture; any other is depth, a mask or other data.
-GRAY = ("Y", "R")
+#: Names of the one channel of a gray picture, and values of colorInteropID that say nothing of an encoding.
+GRAY, UNTAGGED = ("Y", "R"), ("", "unknown", "data")
 
 #: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
 MOST_BRIGHTNESS = 2
-
-#: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
-UNTAGGED = ("", "unknown", "data")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +87,8 @@ def frame_path(sequence: FrameSource, position: int) -> Path:
 def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | None = None) -> EncodedFrame:
     """Return the encoded samples of one frame: of a file that `read_photo` can read, or of OpenEXR with encoded values.
 
-    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated` says
-    whether the samples are multiplied by alpha, and so are divided by it; by default as the file says. Raise a
-    PhotoError or PlateError if the file is damaged, too large, of another format, or may be scene-linear already.
+    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated`: whether
+    the samples are divided by alpha, by default as the file says. Raises as `read_photo` does, or a PlateError.
     """
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
@@ -118,8 +114,7 @@ def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
 @contextmanager
 def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     """Yield an OpenEXR file as an OpenImageIO.ImageInput, or refuse it."""
-    source = oiio.ImageInput.open(str(path))
-    problem = oiio_message()
+    source, problem = oiio.ImageInput.open(str(path)), oiio_message()
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
@@ -147,27 +142,20 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
         header = source.spec()
         gray = next((name for name in GRAY if name in header.channelnames), "")
         channels = [header.channelindex(name if name in header.channelnames else gray) for name in "RGB"]
-        needed = {*channels, header.alpha_channel} - {-1}
-        planes: dict[int, Any] = {channel: _plane(source, channel) for channel in needed}
+        part, needed = source.current_subimage(), {*channels, header.alpha_channel} - {-1}  # others may be many
+        planes = {channel: source.read_image(part, 0, channel, channel + 1, "float") for channel in needed}
         problem = oiio_message(source)
     if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
-    samples = np.stack([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
+    samples = np.concatenate([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
     if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
         raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
-    alpha = planes[header.alpha_channel]  # (H, W)
+    alpha = planes[header.alpha_channel]  # (H, W, 1)
     if is_divided:
-        covered = alpha[..., None] != 0
-        samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
-    return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
-
-
-def _plane(source: Any, channel: int) -> Float32Array | None:
-    """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
-    return None if plane is None else np.asarray(plane)[..., 0]
+        samples = np.divide(samples, alpha, out=np.zeros_like(samples), where=alpha != 0)
+    return EncodedFrame(samples, 1, alpha[..., 0], header, header_color_tags(header, "OpenEXR"))
 
 
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
@@ -181,7 +169,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
     names = set(header.channelnames)
-    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBYA"}
     if (
         header.deep
         or not kinds <= {"half", "float"}

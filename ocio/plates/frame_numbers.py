@@ -1,8 +1,4 @@
-"""Frame numbers in words: ranges such as 1001-1100 and 1-9x2, read and written.
-
-Fileseq reads them. It is imported only when they are: what the Blender add-on calls does without it, so the add-on need
-not bring it.
-"""
+"""Frame numbers in words: ranges such as 1-9x2, read by Fileseq, which the Blender add-on does without."""
 
 from __future__ import annotations
 
@@ -17,11 +13,7 @@ MAX_FRAMES = 1_000_000
 
 
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
-    """Return the frame numbers of a specification, ascending and each once.
-
-    They are numbers, or a text as Fileseq reads it: "1001-1100", "1-10x2" (every second), "1,5,9", "-3--1", also
-    backwards. Raise a PlateError if it is malformed, holds parts of frames, or more than `MAX_FRAMES` frames.
-    """
+    """Return the frame numbers of a specification, ascending, each once; raise a PlateError if Fileseq refuses it."""
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
     from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module

@@ -1,7 +1,6 @@
 """A file name with a placeholder for the frame number, such as `plate.%04d.png` or `plate.####.png`.
 
-Fileseq's reader of file names is not used: it refuses `a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in
-`v1####.png` for a frame.
+Fileseq refuses `a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in `v1####.png` for a frame.
 """
 
 from __future__ import annotations
@@ -27,11 +26,10 @@ class FramePattern:
 
     @classmethod
     def parse(cls, pattern: str | Path) -> FramePattern | None:
-        """Return the pattern, or None for a name without a placeholder.
+        """Return the pattern, or None for a name without a placeholder; those in the folder's name do not count.
 
-        `%04d`, `$F4` and `####` pad to four digits, `@@@` to three; `%d` and `$F` do not pad. A single `#` means four
-        digits, as in oiiotool and RV; several mean as many digits, as in Nuke. Placeholders in the name of the folder
-        do not count. Raise a PlateError if there are several placeholders of the same kind.
+        `%04d`, `$F4`, `####` and, as in oiiotool and RV, `#` pad to four digits, `@@@` to three; `%d` and `$F` do not.
+        Raise a PlateError if there are several placeholders of the same kind.
         """
         path = Path(pattern)
         for placeholder in _PLACEHOLDERS:

@@ -1,7 +1,4 @@
-"""The frames that a name stands for: find their files, choose some of them.
-
-Fileseq finds the sequence of a folder, and is imported only there: see `frame_numbers`.
-"""
+"""The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
 from __future__ import annotations
 
@@ -23,16 +20,12 @@ _NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "": 
 
 @dataclass(frozen=True)
 class FrameSequence:
-    """The files that a name or a pattern stands for, in the order of their frame numbers; at least one.
-
-    A single file has no numbers. `missing` holds the frame numbers asked for, or between the first and the last, for
-    which there is no file. `is_encoded` says that OpenEXR files that do not state their encoding hold encoded values.
-    """
+    """The files that a name or a pattern stands for, in the order of their frame numbers; at least one."""
 
     paths: tuple[Path, ...]
-    numbers: tuple[int, ...] = ()
-    missing: tuple[int, ...] = ()
-    is_encoded: bool = False
+    numbers: tuple[int, ...] = ()  # a single file has none
+    missing: tuple[int, ...] = ()  # asked for, or between the first and the last, and without a file
+    is_encoded: bool = False  # whether OpenEXR files that do not state their encoding hold encoded values
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
         """Yield what reads each frame, for positions in `paths`: see `FrameSource`."""
@@ -42,9 +35,7 @@ class FrameSequence:
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
     """Return the files of a single file's name, of a pattern (`FramePattern.parse`), or of a folder with one sequence.
 
-    An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`. Raise a
-    PlateError if there are no `frames`, they are malformed or come with a single file, or the folder has other
-    sequences.
+    An existing file of exactly this name is taken first, so it may hold `#` or `@`.
     """
     path = Path(pattern)
     kind = _kind(path)

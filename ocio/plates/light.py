@@ -20,11 +20,10 @@ from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
 
-#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and their source.
+#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and their source. The last
+#: two are the sample type, and width and height, which are not attributes.
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
 PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
-
-#: The names under which `_attributes` has the sample type, and width and height, which are not attributes.
 _DEPTH, _SIZE = "crfnet:depth", "crfnet:size"
 
 #: Largest difference in stops between exposures that are the same.
@@ -49,11 +48,7 @@ class PlateLight:
 
     @property
     def attributes(self) -> dict[str, str | float | tuple[float, ...]]:
-        """The attributes of the OpenEXR file by name; those that would be empty are left out.
-
-        Chromaticities are left out where the space has an interop name (Color Interop Forum, "Identifying the Color
-        Space of OpenEXR Files", section "Writing OpenEXR Files").
-        """
+        """The attributes of the OpenEXR file by name; those that would be empty are left out."""
         attributes: dict[str, str | float | tuple[float, ...]] = {
             "colorInteropID": self.space.interop_id,
             "chromaticities": self.space.chromaticities,
@@ -69,9 +64,7 @@ class PlateLight:
 def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
     """Return the stops to add after the inverse response, which leaves the exposure open (Eq. 31 of docs/METHOD.md).
 
-    `gray` is the encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear
-    0.18; by default brightness 1 becomes 1. `stops` are added. `response` may be a LUT of the inverse. Raise a LutError
-    if the gray is black.
+    `gray` is the encoded brightness of a surface that reflects 18 % of the light; by default brightness 1 becomes 1.
     """
     if gray is None:
         return stops
@@ -91,11 +84,7 @@ def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS)
 def check_finished(
     frames: Iterable[Path], light: PlateLight, depth: str, *, sizes: Mapping[Path, tuple[int, int]] | None = None
 ) -> None:
-    """Raise a PlateError unless finished frames mean the same, and have the same sample type, as the new ones.
-
-    A frame differs if it has another exposure, LUT, space, sample type or size, or was made of other primaries. `sizes`
-    holds the width and height of the plates that are known. Files without our attributes, or unreadable, pass.
-    """
+    """Raise a PlateError if finished frames have another exposure, LUT, space, sample type, size or primaries."""
     for path in frames:
         written = _attributes(path)
         if EXPOSURE in written and (difference := _difference(written, light, depth, (sizes or {}).get(path))):

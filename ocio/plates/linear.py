@@ -50,11 +50,7 @@ class PlateReport:
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
-    """Return the linear EXR file of every frame, in the order of the frames; looks at no folder.
-
-    `out` is the .exr file, or for a sequence its pattern, such as `plate.%04d.exr`. Raise a PlateError if it does not
-    end in .exr, has no placeholder for the frames of a sequence, or names a plate.
-    """
+    """Return the linear EXR file of every frame; raise a PlateError if `out` is no file or pattern, or a plate."""
     out = Path(out)
     if out.suffix.lower() != ".exr":
         raise PlateError("not_exr", path=out)
@@ -82,18 +78,14 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    Gray becomes RGB. The color is divided by alpha where the file stores the product, and multiplied by it after the
-    LUT, as OpenEXR requires of coverage. Negative values stay. The output has the same bytes in every run.
-
-    A target that exists is whole, and is left alone unless `overwrite` is set: the same call resumes an interrupted
-    one, or is refused for another LUT, exposure, space or depth. A frame that another process finishes meanwhile is
-    checked, too.
-
-    A frame that fails does not stop the others. `workers` frames, by default one a core, up to `MAX_WORKERS`, are in
-    memory. `progress` counts finished and skipped frames, in this thread. Raise a CRFNetError before any frame is
-    written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
+    The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
+    requires of coverage. A target that exists is whole, and is left alone unless `overwrite` is set: the same call
+    resumes an interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any
+    frame is written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
+    if workers is not None and workers < 1:
+        raise PlateError("bad_workers", workers=workers)
     if options.is_encoded and isinstance(sequence, FrameSequence):
         sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
@@ -112,7 +104,7 @@ def linearize_plates(
         for (target, position), load in zip(pending.items(), loaders, strict=True)
     )
     show_progress(progress, len(skipped), len(targets))
-    with closing(finished(jobs, _worker_count(workers))) as ended:
+    with closing(finished(jobs, workers or min(cores(), MAX_WORKERS))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
             if problem := future.exception():
                 if options.overwrite or not target.exists():
@@ -159,8 +151,10 @@ class _Conversion:
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
         """Return matrix @ lut.apply(B) * scale, times coverage, and alpha: (H, W, 3 or 4), of the output's type."""
         height, width, _ = frame.samples.shape
-        self._check_alpha(frame)
         linear = np.empty((height, width, 3 if frame.alpha is None else 4), SAMPLE_TYPES[self.options.depth])
+        peak = 0.0 if frame.alpha is None else float(np.abs(frame.alpha).max())  # OpenEXR does not bound it
+        if peak > float(np.finfo(linear.dtype).max):
+            raise PlateError("exceeds_half", peak=peak)
         is_coded = frame.samples.dtype.kind == "u"
         codes = np.arange(frame.largest + 1) / frame.largest
         lut, matrix = self.light.lut, self.light.space.matrix
@@ -181,21 +175,11 @@ class _Conversion:
             linear[rows, :, :3] = values
         return linear
 
-    def _check_alpha(self, frame: EncodedFrame) -> None:
-        """Refuse alpha that does not fit into the sample type; other floats of OpenEXR files are not bounded."""
-        peak = 0.0 if frame.alpha is None else float(np.abs(frame.alpha).max())
-        if peak > float(np.finfo(SAMPLE_TYPES[self.options.depth]).max):
-            raise PlateError("exceeds_half", peak=peak)
-
 
 def finished(
     jobs: Iterable[tuple[Name, Callable[[], None]]], workers: int, *, waiting: int = 2
 ) -> Generator[tuple[Name, Future[None]]]:
-    """Yield named jobs as they finish, in threads.
-
-    Jobs are taken in this thread, one at a time, while fewer than `workers` run and `waiting` wait, so that no thread
-    waits for the next one. Close the iterator to end early: jobs that have begun are finished, the others dropped.
-    """
+    """Yield named jobs as they finish, in threads; they are taken in this thread, while fewer than `waiting` wait."""
     pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
     running: dict[Future[None], Name] = {}
     try:
@@ -212,8 +196,7 @@ def finished(
 def _ended(running: dict[Future[None], Name]) -> Iterator[tuple[Name, Future[None]]]:
     """Wait until a job ends; yield it, and others that have ended, in the order of their beginning."""
     done = wait(running, return_when=FIRST_COMPLETED).done
-    for future in [future for future in running if future in done]:
-        yield running.pop(future), future
+    yield from [(running.pop(future), future) for future in [*running] if future in done]
 
 
 def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
@@ -228,23 +211,13 @@ def _scale(light: PlateLight, options: PlateOptions) -> float:
     matrix = np.eye(3) if light.space.matrix is None else light.space.matrix
     if options.depth not in SAMPLE_TYPES:
         raise PlateError("unknown_depth", depth=options.depth)
-    try:
-        scale = float(2.0**light.stops)
-    except OverflowError:
-        scale = np.inf
+    scale = float(2.0 ** min(light.stops, 1000))  # more would be an OverflowError
     peak = float(np.abs(light.lut.values).max() * np.abs(matrix).sum(axis=1).max()) * scale
-    if not 0 < scale < np.inf or not peak <= np.finfo(np.float32).max:
+    if not 0 < scale < np.inf or not peak <= float(np.finfo(np.float32).max):
         raise PlateError("exposure_out_of_range", stops=light.stops)
     if not peak <= float(np.finfo(SAMPLE_TYPES[options.depth]).max):
         raise PlateError("exceeds_half", peak=peak)
     return scale
-
-
-def _worker_count(workers: int | None) -> int:
-    """Return the number of frames linearized at a time."""
-    if workers is not None and workers < 1:
-        raise PlateError("bad_workers", workers=workers)
-    return workers or min(cores(), MAX_WORKERS)
 
 
 def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> CRFNetError:

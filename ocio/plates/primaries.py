@@ -13,11 +13,9 @@ from crfnet_core.types import Float64Array
 from ..defaults import OUTPUT_SPACES, PRIMARIES
 from ..errors import PlateError
 
-#: The sources of primaries that the user states, and of a file without tags, which is taken for sRGB.
-CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
-
-#: The Color Interop Forum's name of a space that has none, or is not known.
-UNKNOWN = "unknown"
+#: The sources of primaries that the user states, and of a file without tags, which is taken for sRGB; and the Color
+#: Interop Forum's name of a space that has none, or is not known.
+CHOSEN, BY_CONVENTION, UNKNOWN = "as given", "no tag, so by convention", "unknown"
 
 #: The primaries of the output spaces; "plate" keeps the primaries of the plate.
 TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": AP0}
@@ -25,10 +23,7 @@ TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": A
 
 @dataclass(frozen=True)
 class PlatePrimaries:
-    """The primaries of a plate, None if its file names some that cannot be expressed, and the source that states them.
-
-    Sources are "ICC profile", "CICP", "EXIF", `CHOSEN` or `BY_CONVENTION`.
-    """
+    """The primaries of a plate, None if its file names some that are not known, and the source that states them."""
 
     primaries: Primaries | None
     source: str
@@ -44,11 +39,7 @@ class PlatePrimaries:
 
 
 def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimaries:
-    """Return the primaries of a plate by its tags, or by a choice: "rec709", "p3", "adobe", "prophoto" or "rec2020".
-
-    "auto" goes by the tags, and takes a file without any for Rec.709, as the sRGB standard has it. Raise a PlateError
-    if there is no such choice.
-    """
+    """Return the primaries of a plate by its tags ("auto"; Rec.709 without any), or by a choice such as "p3"."""
     if choice in PHOTOGRAPHIC:
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
     if choice != PRIMARIES[0]:
@@ -104,11 +95,7 @@ class LinearSpace:
 
 
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
-    """Return the space of a plate's linear values; `output` is one of `TARGETS`. Unknown primaries stay as they are.
-
-    The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
-    back. Raise a PlateError if there is no such space, or unknown primaries are to be converted to ACES.
-    """
+    """Return the space of a plate's linear values, one of `TARGETS`; of unknown primaries ACES is refused."""
     if output not in TARGETS:
         raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))
     if plate.primaries is not None:

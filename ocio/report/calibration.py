@@ -1,7 +1,5 @@
 """A measured response in words, as JSON, and as the provenance in LUT files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -3,8 +3,6 @@
 It needs matplotlib, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crfnet_core.calibration import PairCalibration
-from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
@@ -27,7 +24,7 @@ from .sheet import (
     LONGEST_LINE,
     QUIET,
     SIZE,
-    VERDICT_INK,
+    WARNING_INK,
     ellipsized,
     plain,
     sheet_figure,
@@ -45,8 +42,6 @@ LARGEST_RESIDUAL = 8
 #: Colors of the channels; causes of residuals -> the column of `PairCalibration.points`.
 CHANNELS = np.array([[0.76, 0.18, 0.16, 0.6], [0.12, 0.52, 0.24, 0.6], [0.1, 0.4, 0.76, 0.6]])
 CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
-
-_WARNING = VERDICT_INK[Verdict.USABLE]
 
 
 def draw_calibration(path: Path, calibration: Measured) -> None:
@@ -93,7 +88,7 @@ def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
     lines = calibration_lines(calibration)
     figure.text(0.058, 0.868, ellipsized(lines[0], LONGEST_LINE), va="center", color=QUIET)
     warnings = ellipsized(DOT.join(map(str, calibration.warnings)), LONGEST_LINE)
-    figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
+    figure.text(0.058, 0.026, warnings, va="center", color=WARNING_INK)
 
 
 def _white_words(calibration: Measured) -> str:

@@ -1,7 +1,5 @@
 """Estimates, plates and LUTs as documents: mappings ready for JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any

@@ -1,15 +1,14 @@
 """Facts about photographs and estimates in words, for the command, JSON, LUT files and the sheet."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
+from crfnet_core.posterior.verdict import USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
 
 
@@ -24,7 +23,7 @@ class PhotoFacts:
     has_gain_map: bool = False  # so that the base picture was read
 
     @classmethod
-    def from_photo(cls, photo: Photo) -> PhotoFacts:
+    def from_photo(cls, photo: Photo) -> Self:
         """Return the facts of a photograph."""
         height, width = photo.shape[:2]
         has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
@@ -52,7 +51,7 @@ COMMAND = Phrases()
 def curve_error_words(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    figure = f" (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})" if phrases.has_e_est else ""
+    figure = f" (E_est {estimate.uncertainty:.2f})" if phrases.has_e_est else ""
     return f"{percent:.1f} % of the brightness range{figure}"
 
 
@@ -62,7 +61,7 @@ def shape_error_words(estimate: ResponseEstimate) -> str:
     It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
     """
     shape = estimate.shape_uncertainty
-    return f"{beside_limits(shape, GOOD_STOPS, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
+    return f"{beside_limits(shape, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
 
 
 def expected_errors(estimate: ResponseEstimate) -> str:

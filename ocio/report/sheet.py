@@ -3,8 +3,6 @@
 It needs matplotlib, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -37,7 +35,8 @@ SIZE, DPI = (12.0, 7.2), 150
 BOTTOM, HEIGHT = 0.1, 0.72
 
 INK, QUIET, GRID, CURVE = "#1b1f24", "#6a737d", "#e6e8eb", "#0b66c3"
-VERDICT_INK = {Verdict.GOOD: "#1a7f37", Verdict.USABLE: "#9a6700", Verdict.DO_NOT_TRUST: "#b42318"}
+VERDICT_INK = {Verdict.USABLE: "#1a7f37", Verdict.DO_NOT_TRUST: "#b42318"}
+WARNING_INK = "#9a6700"
 
 #: Characters of a file name, and of a line across the whole sheet, for which there is room.
 LONGEST_NAME, LONGEST_LINE = 46, 165
@@ -74,7 +73,7 @@ def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *,
 
 
 @contextmanager
-def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
+def sheet_figure(path: Path) -> Iterator[Figure]:
     """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes.
 
     Raise PlateError if the file cannot be written.
@@ -86,7 +85,7 @@ def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
         figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
         FigureCanvasAgg(figure)
         yield figure
-        with atomic_write(path, overwrite=overwrite, error=PlateError) as temporary:
+        with atomic_write(path, error=PlateError) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
 
 
@@ -105,7 +104,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
     figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
     warning_line = ellipsized(DOT.join(map(str, estimate.warnings)), LONGEST_LINE)
-    figure.text(0.058, 0.026, warning_line, va="center", color=VERDICT_INK[Verdict.USABLE])
+    figure.text(0.058, 0.026, warning_line, va="center", color=WARNING_INK)
 
 
 def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:

@@ -1,7 +1,5 @@
 """Estimates, plates and LUTs in words: the lines that the command and the add-on show."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +10,7 @@ from crfnet_core.library import Camera
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
 
-from ..defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
+from ..defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY, WHITE_ERROR
 from ..output_files import OutputFiles
 from ..plates.frame_numbers import format_frames
 from ..plates.linear import PlateReport
@@ -21,10 +19,12 @@ from .facts import COMMAND, Phrases, agreeing, basis, curve_error_words, expecte
 
 #: The verdicts in words for people.
 VERDICTS = {
-    Verdict.GOOD: "good",
-    Verdict.USABLE: "usable: look at the plate before you rely on it",
+    Verdict.USABLE: "usable: look at the linear plate before you rely on it",
     Verdict.DO_NOT_TRUST: "not to be trusted",
 }
+
+#: How much an estimate from photographs may claim; the place is the error of where white lies, in stops.
+RANK = "On real cameras white was off by {:.1f} stop; such errors hold on average, and hardly rank single photographs."
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
 GRAY_TOLERANCE = 0.0005
@@ -52,6 +52,7 @@ def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> lis
     return [
         f"The {'response' if estimate.camera else 'estimate'} is {verdict}.",
         _expectation(estimate, phrases),
+        *([RANK.format(WHITE_ERROR)] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
         *([f"{agreeing(estimate)}."] if estimate.windows else []),

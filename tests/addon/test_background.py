@@ -5,7 +5,7 @@ import threading
 import pytest
 
 from blender_addon.work.background import BackgroundTask
-from blender_addon.work.errors import AddonError, CancelledError, expected_errors
+from blender_addon.work.errors import CancelledError
 
 
 def ended(function):
@@ -44,10 +44,3 @@ def test_a_function_is_cancelled_at_its_next_step():
     assert 2 not in steps
     with pytest.raises(CancelledError):
         task.result()
-
-
-def test_the_estimators_errors_are_expected_once_it_is_loaded():
-    import crfnet_core
-
-    assert expected_errors() == (AddonError, crfnet_core.CRFNetError)
-    assert issubclass(CancelledError, AddonError)

@@ -27,14 +27,11 @@ def assert_color(pixels, color):
     np.testing.assert_allclose(pixels[..., :3], np.broadcast_to(color, pixels[..., :3].shape), atol=1e-6)
 
 
-def test_it_is_an_image_as_blender_stores_it(picture):
+def test_it_is_an_image_as_blender_stores_it_with_an_empty_margin(picture):
     assert picture.shape == (SIZE, SIZE, 4)
     assert picture.dtype == np.float32
     assert (picture[..., 3] == 1).all()
     assert ((picture >= 0) & (picture <= 1)).all()
-
-
-def test_the_margin_is_empty(picture):
     for margin in (picture[SIZE - 5 :], picture[:, SIZE - 5 :], picture[:5], picture[:, :2]):
         assert_color(margin, BACKGROUND)
 

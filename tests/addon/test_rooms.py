@@ -7,11 +7,6 @@ from pathlib import Path
 
 import pytest
 
-ESTIMATOR = {"crfnet_core", "crfnet", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
-
-#: Modules of `work` that Blender imports when it enables the add-on.
-LIGHT = ("background", "curve_picture", "errors", "job", "wording")
-
 IMPORT_WORK = """
 import importlib, pkgutil, sys
 sys.modules["bpy"] = None
@@ -31,13 +26,6 @@ class Absent:
         if name.partition(".")[0] in {OPTIONAL}:
             raise ModuleNotFoundError(name + " is blocked", name=name)
 sys.meta_path.insert(0, Absent())
-"""
-
-IMPORT_LIGHT = f"""
-import importlib, sys
-for name in {LIGHT}:
-    importlib.import_module("blender_addon.work." + name)
-print(*sys.modules)
 """
 
 
@@ -71,10 +59,6 @@ def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):
         names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
         names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
         assert "bpy" not in {name.partition(".")[0] for name in names}, path
-
-
-def test_what_blender_imports_of_work_at_its_start_is_light(root):
-    assert not {name.partition(".")[0] for name in loaded_by(IMPORT_LIGHT, root)} & ESTIMATOR
 
 
 @pytest.mark.parametrize("room", ["ui", "ui/image_editor", "ui/more", "scene", "work"])

@@ -16,9 +16,7 @@ from crfnet.pipeline import estimates
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
 from crfnet_core.errors import ModelError
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.posterior import Verdict
 from tests.helpers.color_profiles import matrix_profile, write_tagged
-from tests.helpers.footage import limited_range_picture
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
@@ -37,24 +35,6 @@ def calls(monkeypatch):
 
 def cancel(_done, _total):
     raise CancelledError("Cancelled")
-
-
-def test_the_estimate_is_the_apis(make_job, plate_file, estimate):
-    completed = run(make_job(mode=ApplyMode.NODES))
-    np.testing.assert_array_equal(completed.estimate.weights, estimate(plate_file).weights)
-    assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
-
-
-def test_the_prior_and_the_metadata_follow_the_job(make_job):
-    completed = run(make_job(mode=ApplyMode.NODES, prior="any", use_metadata=False))
-    assert (completed.estimate.prior, completed.estimate.origins) == ("any", ())
-
-
-def test_pixels_from_blender_have_no_metadata(make_job):
-    job = make_job(mode=ApplyMode.NODES)
-    assert len(run(job).estimate.origins) == 1
-    painted = dataclasses.replace(job, plate=dataclasses.replace(job.plate, has_metadata=False))
-    assert run(painted).estimate.origins == ()
 
 
 def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
@@ -123,33 +103,6 @@ def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
         run(make_job(mode=mode))
     assert loads == []
     assert run(make_job(mode=mode, overwrite=True)).files is not None
-
-
-@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
-def test_the_estimate_is_kept_if_its_files_cannot_be_written(make_job, plate_file, estimate, monkeypatch, mode):
-    def refuse(*_arguments, **_options):
-        raise PlateError("the disk is full")
-
-    monkeypatch.setattr(writers, "write", refuse)
-    completed = run(make_job(mode=mode))
-    assert (str(completed.problem), completed.files, completed.is_applied) == ("the disk is full", None, False)
-    assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
-
-
-@pytest.mark.parametrize("mode", list(ApplyMode)[1:])
-def test_what_is_not_to_be_trusted_is_applied_at_the_users_word_only(make_job, estimate, plate_file, tmp_path, mode):
-    job = make_job(mode=mode, stored=dataclasses.replace(estimate(plate_file), verdict=Verdict.DO_NOT_TRUST))
-    completed = run(job)
-    assert (completed.is_withheld, completed.is_applied, completed.files) == (True, False, None)
-    assert not (tmp_path / "out").exists()
-    insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
-    assert (insisted.is_withheld, insisted.is_applied) == (False, True)
-
-
-def test_what_is_recognized_is_named_and_withheld(make_job, tmp_path):
-    job = make_job(write_image(tmp_path / "limited.png", limited_range_picture()), mode=ApplyMode.NODES)
-    completed = run(job)
-    assert (completed.estimate.recognition.kind, completed.is_withheld) == ("limited range", True)
 
 
 def test_a_doubtful_estimate_is_one_with_warnings(make_job, tmp_path):

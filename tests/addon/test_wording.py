@@ -37,6 +37,7 @@ def test_an_error_has_the_remedy_in_blender():
 
 def test_a_report_names_the_verdict_and_the_first_warning_in_few_words(found):
     assert report_line("plate", found, "done") == "plate: the response is usable; done"
+    assert report_line("n" * 200, found, "done").startswith("n" * 22 + "..." + "n" * 23 + ": ")
     one = dataclasses.replace(found, warnings=(Notice("gray"),))
     assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray photograph); done"
     two = dataclasses.replace(found, warnings=(Notice("edited", {"editor": "GIMP"}), Notice("gray")))

@@ -134,8 +134,8 @@ def rendered_anew(tmp_path, root):
     return render
 
 
-def rendered(scene, path, size):
-    """Render a scene's compositor to an EXR file and return its pixels."""
+def rendered(scene, path, size, *, has_render=False):
+    """Render a scene's compositor to an EXR file and return its pixels; of the scene, nothing by default."""
     from blender_addon.scene.compositor import compositor_tree
 
     render = scene.render
@@ -150,7 +150,7 @@ def rendered(scene, path, size):
     render.image_settings.color_depth, render.image_settings.color_mode = "32", "RGBA"
     render.filepath = str(path)
     nodes = compositor_tree(scene).nodes
-    for node in [node for node in nodes if node.type == "R_LAYERS"]:
-        nodes.remove(node)  # nothing is to be rendered
+    for node in [node for node in nodes if node.type == "R_LAYERS" and not has_render]:
+        nodes.remove(node)
     bpy.ops.render.render(write_still=True)
     return read_image(path)

@@ -71,6 +71,11 @@ def group_node(part="Camera Response"):
     return node
 
 
+def output():
+    """The node whose input the scene's compositor renders."""
+    return next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
+
+
 def reopen(path):
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     bpy.ops.wm.open_mainfile(filepath=str(path))

@@ -69,16 +69,12 @@ def test_a_linked_compositor_is_refused_and_nothing_is_stored(tree, plates, tmp_
     assert "camera_response" not in plates[0]
 
 
-def test_the_new_group_is_active_and_the_only_selected_node(tree, plates):
+def test_a_new_group_is_the_only_selected_node_and_one_brought_up_to_date_leaves_the_selection(tree, plates):
     for image in plates:
         estimate(image, "NODES")
         selected = [node for node in tree.nodes if node.select]
         assert selected == [tree.nodes.active]
         assert selected[0].node_tree["camera_response_of"] == image
-
-
-def test_what_is_only_brought_up_to_date_leaves_the_selection(tree, plates):
-    estimate(plates[0], "NODES")
     (viewer,) = of_kind(tree, "VIEWER")
     tree.nodes.active = viewer
     for node in tree.nodes:
@@ -148,6 +144,8 @@ def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
     assert tuple(baked.tracking.tracks[0].markers.find_frame(2).co) == (0.25, 0.5)
     assert (baked.source, baked.colorspace_settings.name) == ("SEQUENCE", "Linear Rec.709")
     assert "camera_response" not in baked
+    with pytest.raises(RuntimeError, match="the linear plate of"):
+        bpy.ops.crf.estimate_response(clip=baked.name)
     baked.tracking.camera.focal_length = 50
     bpy.ops.crf.apply_response(clip=clip.name, apply="BAKE", overwrite=True)
     assert [clip.name for clip in bpy.data.movieclips if "linear" in clip.name] == ["shot_linear.1001.exr"]

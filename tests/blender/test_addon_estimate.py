@@ -11,7 +11,7 @@ from crfnet_core.photograph.metadata import Device
 from crfnet_core.posterior import Prior
 from tests.helpers.images import read_image, write_image
 
-from .helpers import bpy, load, load_sequence, paint, reopen, stored_estimate
+from .helpers import bpy, drawn_in, labels, load, load_sequence, paint, reopen, stored_estimate
 
 EDITORS = {"IMAGE_EDITOR": "image", "CLIP_EDITOR": "clip"}
 
@@ -39,7 +39,7 @@ def test_the_estimate_is_the_apis(image, plate_file, estimate):
     assert_stored(image, estimate(plate_file))
 
 
-def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
+def test_it_survives_in_the_file_and_is_shown_without_the_plate(image, plate_file, tmp_path, estimate, in_editor):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
     image.use_fake_user = True
     reopen(tmp_path / "shot.blend")
@@ -47,6 +47,7 @@ def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
     assert_stored(image, estimate(plate_file))
     assert image.camera_response_settings.exposure == 0.5
     plate_file.rename(plate_file.with_name("gone.png"))
+    assert f"Expected error {image.camera_response.expected_error:.2f} stop" in labels(drawn_in(image, in_editor))
     with pytest.raises(RuntimeError, match="does not exist"):
         bpy.ops.crf.estimate_response(image=image.name)
 
@@ -71,7 +72,9 @@ def test_undo_takes_everything_back(image):
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
     bpy.ops.ed.undo_push(message="estimate")
     assert any(group.name.startswith("Camera Response plate") for group in bpy.data.node_groups)
+    assert bpy.context.scene.render.film_transparent
     bpy.ops.ed.undo()
+    assert not bpy.context.scene.render.film_transparent
     image = bpy.data.images["plate.png"]
     assert "camera_response" not in image
     assert image.colorspace_settings.name == "sRGB"

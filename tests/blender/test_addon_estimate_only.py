@@ -36,13 +36,13 @@ def scene_state():
 
 
 def test_estimate_only_comes_first_and_changes_nothing_but_the_estimate(addon, image):
-    assert addon.apply == image.camera_response_settings.apply == "ESTIMATE"
+    assert addon.apply_as == image.camera_response_settings.apply == "NODES"
     before = scene_state()
     assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
     assert scene_state() == before
     assert "camera_response" in image
-    with pytest.raises(RuntimeError, match="choose what to make of the response"):
-        bpy.ops.crf.apply_response(image=image.name)
+    assert bpy.ops.crf.apply_response(image=image.name) == {"FINISHED"}
+    assert scene_state() != before
 
 
 @pytest.mark.parametrize("mode", ["NODES", "BAKE", "EXPORT"])
@@ -50,13 +50,12 @@ def test_do_not_trust_is_not_applied_without_the_users_word(untrusted, tmp_path,
     folder = tmp_path / "out"
     before = scene_state()
     choices = {"image": untrusted.name, "apply": mode, "folder": str(folder)}
-    assert bpy.ops.crf.estimate_response(**choices) == {"FINISHED"}
-    assert scene_state() == before
-    assert not folder.exists()
-    assert "camera_response" in untrusted
-    with pytest.raises(RuntimeError, match=r"the response is not to be trusted; .* press Apply Anyway"):
-        bpy.ops.crf.apply_response(**choices)
-    assert scene_state() == before
+    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+        with pytest.raises(RuntimeError, match=r"not to be trusted; .* press Apply Anyway \(anyway=True\)"):
+            operator(**choices)
+        assert scene_state() == before
+        assert not folder.exists()
+        assert (untrusted.camera_response.verdict, untrusted.camera_response.is_applied) == ("do not trust", False)
     assert bpy.ops.crf.apply_response(**choices, anyway=True) == {"FINISHED"}
     assert folder.exists() or scene_state() != before
 
@@ -69,7 +68,7 @@ def test_there_is_no_redo_panel_and_no_choice_is_left_for_the_next_plate(image, 
         operator("EXEC_DEFAULT", True, image=image.name, **choices)
         assert bpy.context.active_operator is None
     bpy.ops.crf.estimate_response("EXEC_DEFAULT", True, image=other.name)
-    assert (other.camera_response_settings.apply, other.camera_response_settings.exposure) == ("ESTIMATE", 0)
+    assert (other.camera_response_settings.apply, other.camera_response_settings.exposure) == ("NODES", 0)
 
 
 def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypatch):

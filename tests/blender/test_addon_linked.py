@@ -51,9 +51,9 @@ def test_saving_leaves_the_code_values_of_the_other_file_alone(image, tmp_path):
 
     apply(image)
     image.pack()
-    bpy.app.handlers.save_pre.remove(handlers.pack_code_values)  # as by a Blender without the add-on
+    bpy.app.handlers.save_pre.remove(handlers.prepare_saving)  # as by a Blender without the add-on
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
-    bpy.app.handlers.save_pre.append(handlers.pack_code_values)
+    bpy.app.handlers.save_pre.append(handlers.prepare_saving)
     bpy.context.scene["kept"] = plate = link(tmp_path / "other.blend")
     before = {(found.name, found.library) for found in bpy.data.images}
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))

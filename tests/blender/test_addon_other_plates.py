@@ -24,7 +24,6 @@ def copy(*names, is_clip=False, is_chosen=True):
 
 def test_each_gets_a_response_without_verdict_that_says_where_it_is_from(images, in_editor):
     one, two, three = images
-    one["camera_response"]["verdict"] = "good"
     assert copy("two.png") == {"FINISHED"}
     stored = two["camera_response"]
     assert stored["brightness"].to_list() == one["camera_response"]["brightness"].to_list()
@@ -32,7 +31,7 @@ def test_each_gets_a_response_without_verdict_that_says_where_it_is_from(images,
     assert "camera_response" not in three
     assert "origin" not in one["camera_response"]
     words = labels(drawn_in(two, in_editor))
-    assert (words[0], "Good" in words, "From one.png" in " ".join(words)) == ("Copied", False, True)
+    assert (words[0], "Usable" in words, "From one.png" in " ".join(words)) == ("Copied", False, True)
 
 
 def test_it_is_applied_as_to_the_first(images, tree):

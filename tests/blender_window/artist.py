@@ -123,6 +123,11 @@ class Artist:
         clicked = self.start(command)
         return self.wait_for_end() - clicked
 
+    def apply(self) -> None:
+        """Press Estimate, and Apply when it has ended: the two clicks from a photograph to its light."""
+        self.run()
+        self.run(APPLY)
+
     def wait_for_end(self) -> float:
         """Wait until the run has ended; return when that was, or was found, by `time.monotonic`."""
         if not self.call("runs.has_started"):  # it was too short to be seen

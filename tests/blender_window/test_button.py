@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.blender_window.artist import APPLY
 from tests.blender_window.base import BAKED, NODES, WindowTest, report
 
 PLATE = "plate.jpg"
@@ -14,8 +15,7 @@ class TestButton(WindowTest):
         self.name = self.artist.open(self.plate(PLATE))
 
     def test_the_stored_estimate_is_that_of_the_command(self):
-        self.artist.call("plates.choose", self.name, apply="NODES")
-        self.artist.run()
+        self.artist.apply()
         self.artist.settle()
         self.keep(self.artist.picture(), "button_nodes")
         stored, expected = self.artist.call("plates.stored", self.name), report(PLATE)
@@ -25,14 +25,13 @@ class TestButton(WindowTest):
             self.assertAlmostEqual(found, wanted, places=4)
 
     def test_nodes_give_the_linear_values_of_the_command(self):
-        self.artist.call("plates.choose", self.name, apply="NODES")
-        self.artist.run()
+        self.artist.apply()
         rendered = self.artist.call("plates.render", self.name, str(self.folder / "rendered.exr"))
         self.assert_linear(self.artist, rendered, PLATE, NODES)
 
     def test_baked_files_hold_the_linear_values_of_the_command(self):
         self.artist.call("plates.choose", self.name, apply="BAKE", depth="float")
-        self.artist.run()
+        self.artist.apply()
         self.artist.settle()
         self.keep(self.artist.picture(), "button_bake")
         (baked,) = (self.folder / "project").glob("*.exr")
@@ -40,7 +39,6 @@ class TestButton(WindowTest):
 
     def test_esc_cancels_and_changes_nothing(self):
         name = self.artist.open(self.plate("large.jpg"))
-        self.artist.call("plates.choose", name, apply="NODES")
         before = self.artist.call("plates.state")
         self.artist.start()
         self.artist.screen.key("Escape")
@@ -49,9 +47,9 @@ class TestButton(WindowTest):
         self.assertIsNone(self.artist.call("plates.stored", name))
 
     def test_one_undo_takes_all_back_and_redo_brings_it(self):
-        self.artist.call("plates.choose", self.name, apply="NODES")
-        before = self.artist.call("plates.state")
         self.artist.run()
+        before = self.artist.call("plates.state")
+        self.artist.run(APPLY)
         after = self.artist.call("plates.state")
         self.assertNotEqual(after, before)
         self.artist.settle()

@@ -44,14 +44,12 @@ class TestPictures(WindowTest):
         """Take the pictures of plates whose response has been estimated."""
         for plate, verdict in (("b/IMG_0001.jpg", "usable"), ("limited.png", "do not trust")):
             name = artist.open(self.plate(plate))
-            artist.call("plates.choose", name, apply="NODES")
             artist.run()
             artist.settle()
             keep(verdict.replace(" ", "_"))
             self.assertEqual(artist.call("plates.stored", name)["verdict"], verdict)
         name = artist.open(self.plate("a/IMG_0001.jpg"))
-        artist.call("plates.choose", name, apply="NODES")
-        artist.run()
+        artist.apply()
         artist.settle()
         artist.press(SHOW_LINEAR)
         artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")

@@ -21,7 +21,7 @@ class TestUserFolder(WindowTest):
         self.assertTrue(artist.call("runs.install", str(package())))
         name = artist.open(self.plate("plate.jpg"))
         artist.call("plates.choose", name, apply="EXPORT", folder=str(self.folder / "look"))
-        artist.run()
+        artist.apply()
         artist.call("runs.uninstall")
         artist.blender.quit()
         artist = self.start()

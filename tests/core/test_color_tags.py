@@ -138,6 +138,25 @@ class TestIccProfiles:
         curves = {f"{name}TRC": curve for name in "rgb"}
         assert read_icc(matrix_profile(REC2020, version=version, **curves)).transfer == ("linear" if is_linear else "")
 
+    @pytest.mark.parametrize(
+        ("light", "transfer"),
+        [
+            (lambda codes: colour.models.eotf_ST2084(codes) / 10_000, "PQ"),
+            (lambda codes: colour.models.eotf_ST2084(codes) / 203, "PQ"),
+            (colour.models.oetf_inverse_BT2100_HLG, "HLG"),
+            (lambda codes: colour.models.oetf_inverse_BT2100_HLG(codes) ** 1.2, "HLG"),
+            (lambda codes: colour.models.log_decoding_SLog3(codes) / 38, "log"),
+            (lambda codes: codes**2.6, ""),
+            (colour.models.oetf_inverse_BT709, ""),
+        ],
+    )
+    def test_published_curves_are_seen_whatever_the_profile_is_called(self, light, transfer):
+        codes = np.clip(np.rint(light(np.linspace(0, 1, 4096)) * 65535), 0, 65535).astype(">u2")
+        curve = b"curv" + struct.pack(">II", 0, 4096) + codes.tobytes()
+        gray = profile({"kTRC": curve, "wtpt": numbers(b"XYZ ", xyz_of(D50))}, color=b"GRAY")
+        color = matrix_profile(REC2020, **{f"{name}TRC": curve for name in "rgb"})
+        assert [read_icc(icc).transfer for icc in (gray, color)] == [transfer] * 2
+
     def test_the_profile_of_little_cms(self):
         ImageCms = pytest.importorskip("PIL.ImageCms")
         srgb = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
@@ -153,6 +172,14 @@ class TestFiles:
     def test_an_icc_profile_is_read(self, tmp_path, name):
         path = write_tagged(tmp_path / name, GRAY, matrix_profile(DISPLAY_P3))
         assert self.tags(path) == ColorTags(DISPLAY_P3, "", "ICC profile")
+
+    def test_the_profile_of_a_bmp_is_read(self, tmp_path):
+        icc = matrix_profile(DISPLAY_P3)
+        header = struct.pack("<IiiHHIIiiII", 124, 2, 2, 1, 24, 0, 16, 0, 0, 0, 0).ljust(56, b"\0") + b"DEBM"
+        header = header.ljust(112, b"\0") + struct.pack("<III", 140, len(icc), 0)
+        start = struct.pack("<2sIHHI", b"BM", 154 + len(icc), 0, 0, 138)
+        (tmp_path / "a.bmp").write_bytes(start + header + bytes(16) + icc)
+        assert self.tags(tmp_path / "a.bmp") == ColorTags(DISPLAY_P3, "", "ICC profile")
 
     def test_a_profile_of_tables_is_unknown_whatever_exif_says(self, tmp_path):
         icc = profile({"A2B0": b"mft2".ljust(52, b"\0")})

@@ -118,12 +118,6 @@ def test_tables_of_the_ijg_library_have_its_quality_and_others_have_none():
     assert ijg_quality(scaled_table(ANNEX_K_LUMA, 90), scaled_table(ANNEX_K_CHROMA, 80)) is None
 
 
-@pytest.mark.parametrize("name", ["a.jpg", "a.png", "a.tif", "a.webp", "a.dpx"])
-def test_metadata_alone_is_that_of_the_photograph(tmp_path, name):
-    path = write_image(tmp_path / name, np.full((16, 16, 3), 128, np.uint8), **EXIF)
-    assert read_metadata(path) == read_photo(path).metadata
-
-
 def test_metadata_alone_is_read_without_the_pixels(tmp_path):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
     path = write_image(tmp_path / "a.png", noise, Make="Canon")

@@ -11,6 +11,7 @@ from crfnet_core.errors import ModelError
 from crfnet_core.network import DEFAULT_MODEL, MODELS, ResponseNetwork, inference, model_folder
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.statistics import window_statistics
+from tests.helpers.refusals import refused
 
 #: The evidence of all windows together in the golden predictions.
 POOLED = ("pooled_location", "pooled_factor", "pooled_log_odds")
@@ -197,7 +198,44 @@ def test_weights_in_another_file_are_refused(fixed_model, tmp_path, monkeypatch,
 
 def field(number, content):
     """Return a field of a message of Protocol Buffers."""
-    return bytes([number << 3 | 2, len(content)]) + content
+    head = bytes([number << 3 | 2, len(content) & 127])
+    return (head if len(content) < 128 else head[:1] + length(len(content))) + content
+
+
+def length(size):
+    return bytes([size >> shift & 127 | 128 for shift in (0, 7, 14)] + [size >> 21])
+
+
+@pytest.mark.parametrize(
+    ("more", "code"),
+    [
+        (field(7, field(13, b"") * 20_000), "unloadable_graph"),  # each takes a hundred bytes of memory
+        (field(7, field(1, field(3, bytes(5 * 2**20)))), "unloadable_graph"),
+        (field(7, field(15, b"")), "external_weights"),  # 40 bytes can stand for gigabytes
+        (field(7, field(1, field(5, field(1, b"sparse_value")))), "external_weights"),
+        (b"\xba\x80\x80\x80\x10" + field(7, b"")[1:], "unloadable_graph"),  # a key of 33 bits
+    ],
+)
+def test_a_graph_out_of_bounds_is_refused_before_onnxruntime_reads_it(fixed_model, tmp_path, monkeypatch, more, code):
+    folder = shutil.copytree(fixed_model, tmp_path / "model")
+    monkeypatch.setattr("crfnet_core.network.session.onnxruntime", None)
+    assert refusal(write_graph(folder, (folder / "model.onnx").read_bytes() + more)) == code
+
+
+def test_a_graph_whose_values_take_too_much_memory_is_refused(fixed_model, tmp_path):
+    """Its output is of a shape that stands in its weights: 10 ** 9 numbers."""
+    folder = shutil.copytree(fixed_model, tmp_path / "model")
+    shape = field(5, b"\x08\x01\x10\x07" + field(8, b"shape") + field(9, (10**9).to_bytes(8, "little")))
+    node = field(1, field(1, b"shape") + field(2, b"large") + field(4, b"ConstantOfShape"))
+    output = field(12, field(1, b"large") + field(2, field(1, b"\x08\x01")))
+    write_graph(folder, (folder / "model.onnx").read_bytes() + field(7, shape + node + output))
+    edit(folder, output_names=["large", "factors", "log_odds"])
+    assert refusal(folder) == "failing_graph"
+
+
+def test_a_run_that_takes_too_long_ends(tmp_path, monkeypatch):
+    monkeypatch.setattr("crfnet_core.network.session.RUN_SECONDS", 0)
+    assert refusal(shutil.copytree(MODELS / "crfnet2017-2.0", tmp_path / "model")) == "failing_graph"
 
 
 def test_as_many_windows_run_at_the_same_time_as_cores_may_be_used(windows, monkeypatch):
@@ -210,6 +248,5 @@ def test_as_many_windows_run_at_the_same_time_as_cores_may_be_used(windows, monk
 
 
 def test_threads_are_not_negative():
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, "negative_threads"):
         ResponseNetwork.load(threads=-1)
-    assert caught.value.code == "negative_threads"

@@ -130,13 +130,6 @@ def test_associated_alpha_is_divided_out(tmp_path):
     assert read_codes(path).is_associated
 
 
-def test_gray_with_alpha(tmp_path):
-    path = write_image(tmp_path / "a.png", np.array([[[9, 100], [8, 0]]], np.uint8), oiio__UnassociatedAlpha=1)
-    values = read_codes(path)
-    assert values.codes.tolist() == [[[9, 9, 9], [8, 8, 8]]]
-    assert values.alpha.tolist() == [[100, 0]]
-
-
 @pytest.mark.parametrize(("content", "name"), [("a.png", "b.jpg"), ("a.jpg", "b.png"), ("a.tif", "b")])
 def test_the_content_counts_not_the_suffix(tmp_path, content, name):
     write_image(tmp_path / content, CODES8)

@@ -31,13 +31,9 @@ def with_alpha(codes):
 @pytest.mark.parametrize(
     ("array", "order"),
     [
-        (CODES, "RGB"),
-        (CODES[..., ::-1], "BGR"),
-        (with_alpha(CODES), "RGBA"),
-        (with_alpha(CODES[..., ::-1]), "BGRA"),
-        (EXACT, "RGB"),
+        *((CODES, "RGB"), (CODES[..., ::-1], "BGR"), (with_alpha(CODES), "RGBA")),
+        *((with_alpha(CODES[..., ::-1]), "BGRA"), (EXACT, "RGB"), (EXACT.tolist(), "RGB")),
         (EXACT.astype(np.float64)[..., ::-1], "BGR"),
-        (EXACT.tolist(), "RGB"),
     ],
 )
 def test_the_order_of_the_channels_is_as_stated(array, order):
@@ -75,9 +71,7 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
 @pytest.mark.parametrize(
     ("mode", "array"),
     [
-        ("RGB", CODES),
-        ("RGBA", with_alpha(CODES)),
-        ("L", CODES[..., 0]),
+        *(("RGB", CODES), ("RGBA", with_alpha(CODES)), ("L", CODES[..., 0])),
         ("LA", np.concatenate([CODES[..., :1], ALPHA], 2)),
     ],
 )
@@ -139,13 +133,8 @@ def test_other_arrays_are_refused(array, options, code):
 @pytest.mark.parametrize(
     ("pixels", "code"),
     [
-        (CODES, "photo_pixels"),
-        (EXACT.astype(np.float64), "photo_pixels"),
-        (EXACT[..., 0], "photo_pixels"),
-        (EXACT[:0], "photo_pixels"),
-        (EXACT.tolist(), "photo_pixels"),
-        (255 * EXACT, "array_out_of_range"),
-        (EXACT - 1, "array_out_of_range"),
+        *((each, "photo_pixels") for each in (CODES, EXACT.astype(float), EXACT[..., 0], EXACT[:0], EXACT.tolist())),
+        *((255 * EXACT, "array_out_of_range"), (EXACT - 1, "array_out_of_range")),
         (np.where(EXACT == 1, np.nan, EXACT).astype(np.float32), "array_holds_nan"),
     ],
 )

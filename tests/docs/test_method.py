@@ -152,7 +152,6 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"with a probability of {posterior.BAND:.0%}".replace("%", " %"),
         f"at {len(responses.BAND_SAMPLES)} irradiances",
         f"or $u_{{stops}}$ is above {verdict.USABLE_STOPS:g}",
-        f"$u_{{stops}}$ is at most {verdict.GOOD_STOPS:g} and $u$ at most {verdict.GOOD_ERROR:g}",
         f"at {signature(inverse_response_lut).parameters['length'].default} uniform brightnesses",
         f"at most {MAX_END_SLOPE:g}",
     ],

@@ -18,14 +18,15 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import CRFNetError
+from tests.helpers.memory import peak_of_now
 
 #: The first seed; seconds of each test, and of a single case.
 FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED") or secrets.randbelow(2**32))
 SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "2"))
 MOST_SECONDS = 20.0
 
-#: Bytes of memory beyond those at the start.
-MOST_MEMORY = 2 * 2**30
+#: Bytes of memory beyond those at the start of a case.
+MOST_MEMORY = 2**30
 
 
 def pytest_terminal_summary(terminalreporter):
@@ -41,17 +42,19 @@ def fuzz(record_property, capsys):
     """Call a case with a generator of every seed until the time is up: fuzz(case)."""
 
     def run(case):
-        failures, begin, memory = [], time.monotonic(), peak_memory()
+        failures, begin = [], time.monotonic()
         for seed in count(FIRST_SEED):
             if (began := time.monotonic()) > begin + SECONDS:
                 break
             faulthandler.dump_traceback_later(3 * MOST_SECONDS, exit=True, file=sys.__stderr__)
+            peak_of_now()
+            memory = peak_of_now()
             try:
                 with warnings.catch_warnings():
                     warnings.simplefilter("error")
                     case(np.random.default_rng(seed))
                 assert time.monotonic() - began < MOST_SECONDS, "took too long"
-                assert peak_memory() - memory < MOST_MEMORY, "took too much memory"
+                assert peak_of_now() - memory < MOST_MEMORY, "took too much memory"
                 assert capsys.readouterr() == ("", ""), "printed something"
             except Exception as problem:  # noqa: BLE001 - whatever is raised is a finding
                 place = traceback.extract_tb(problem.__traceback__)[-1]
@@ -84,12 +87,3 @@ def refused():
         return True
 
     return is_refused
-
-
-def peak_memory():
-    """Return the most memory that this process has had, in bytes; 0 where the system does not say."""
-    try:
-        import resource
-    except ImportError:
-        return 0
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

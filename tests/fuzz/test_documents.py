@@ -1,6 +1,8 @@
+import hashlib
 import json
 import shutil
 
+import numpy as np
 import pytest
 
 from crfnet.configs.looks import read_looks
@@ -15,6 +17,8 @@ from crfnet_core.library.library import SHIPPED
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.posterior.prior import PRIORS
+from crfnet_core.statistics.windows import WINDOW_SIZE
+from tests.helpers.memory import peak_of_now
 from tests.helpers.mutations import mutated, mutated_text, mutated_value
 
 
@@ -39,6 +43,29 @@ def test_damaged_descriptions_of_models_are_refused(fuzz, refused, fixed_model, 
         refused(ResponseNetwork.load, folder)
 
     fuzz(case)
+
+
+def test_damaged_graphs_are_run_or_refused(fuzz, refused, fixed_model, tmp_path):
+    folder = shutil.copytree(fixed_model, tmp_path / "m")
+    graph, document = (folder / "model.onnx").read_bytes(), json.loads((folder / "model.json").read_text())
+    windows = np.full((1, WINDOW_SIZE, WINDOW_SIZE, 3), 0.5, np.float32)
+
+    def case(generator):
+        content = mutated(graph, generator)
+        (folder / "model.onnx").write_bytes(content)
+        (folder / "model.json").write_text(json.dumps(document | {"sha256": hashlib.sha256(content).hexdigest()}))
+        refused(lambda path: ResponseNetwork.load(path).predict(windows), folder)
+
+    fuzz(case)
+
+
+def test_memory_is_measured_anew_for_each_case():
+    """A case that needs less than an earlier one did is seen."""
+    bytearray(2**28)
+    peak_of_now()
+    before = peak_of_now()
+    bytearray(2**27)
+    assert peak_of_now() - before > 2**26 or before == 0
 
 
 @pytest.fixture(scope="module")

@@ -67,7 +67,7 @@ def test_square_photographs_and_portraits_lie_beside_their_linear_plate(estimate
 @pytest.mark.parametrize("verdict", Verdict)
 @pytest.mark.parametrize("name", ["plain.jpg", "long name " * 20 + ".jpg", "写真 $x_1$ \\frac 🎬.jpg"])
 def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, verdict, name):
-    warnings = () if verdict is Verdict.GOOD else ("a warning that is long enough to go on and on " * 6,)
+    warnings = () if verdict is Verdict.USABLE else ("a warning that is long enough to go on and on " * 6,)
     origin = dataclasses.replace(estimate.origins[0], words=(f"taken by {name}", f"saved by {name}"))
     origins = (origin, estimate.origins[0])
     other = dataclasses.replace(estimate, verdict=verdict, photos=(name, "b.jpg"), warnings=warnings, origins=origins)

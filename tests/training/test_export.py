@@ -10,8 +10,7 @@ onnx = pytest.importorskip("onnx", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ModelConfig, ResponseNetwork
-from training.export.golden import PARITY, assert_parity, write_golden
-from training.export.model_folder import load_network, write_config
+from training.export.model_folder import PARITY, assert_parity, load_network, write_config, write_golden
 from training.export.onnx_graph import POOLING, export_onnx
 from training.network.average import average
 from training.network.model import NetworkConfig, PhotographNet
@@ -27,7 +26,7 @@ def exported(tmp_path_factory):
     (folder / "run").mkdir()
     (folder / "model").mkdir()
     torch.manual_seed(0)
-    torch.save({"net": PhotographNet(CONFIG).state_dict()}, folder / "run" / "last.pt")
+    torch.save({"network": PhotographNet(CONFIG).state_dict()}, folder / "run" / "last.pt")
     record = {"commit": "0" * 40, "dirty": True, "recipe": {"training": {}, "network": asdict(CONFIG)}}
     (folder / "run" / "run.json").write_text(json.dumps(record))
     network = load_network(folder / "run")
@@ -98,8 +97,8 @@ def test_a_run_is_averaged_with_the_model_that_it_began_from(exported, tmp_path)
     (run / "run.json").write_text(json.dumps(record | {"start": start_record(model)}))
     net = load_network(exported / "run").net
     state, name = net.state_dict(), next(name for name, _ in net.named_parameters())
-    torch.save({"net": state | {name: state[name] + 2}}, run / "last.pt")
-    found = torch.load(average([run, model], [1, 1], tmp_path / "mean"), weights_only=True)["net"]
+    torch.save({"network": state | {name: state[name] + 2}}, run / "last.pt")
+    found = torch.load(average([run, model], [1, 1], tmp_path / "mean"), weights_only=True)["network"]
     torch.testing.assert_close(found[name], state[name] + 1)
     parts = json.loads((tmp_path / "mean" / "run.json").read_text())["average"]
     assert parts[1]["checkpoint"] == start_record(model)

@@ -3,8 +3,6 @@ import csv
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.ndimage", reason="training needs the train extra")
-
 from crfnet_core import ResponseCurve
 from crfnet_core.library import camera_estimate
 from training.export.cameras import measured_cameras

@@ -4,8 +4,6 @@ The steps are as in `training.export.model_folder`. The network answers with EMo
 answer is worth as evidence is the covariance of its errors on windows of the validation scenes.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import torch

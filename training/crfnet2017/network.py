@@ -1,7 +1,5 @@
 """The network of Table 1 of the CRF-net paper, for windows of 227 x 227 samples."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

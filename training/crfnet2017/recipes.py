@@ -1,7 +1,5 @@
 """Recipes for the paper's network: optimizer, learning rate, batch and length of both stages."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -28,7 +26,7 @@ class Recipe:
         itself, which is E_est
     averaged_steps: steps that the moving average of the weights reaches back, exponentially; 1 for no average. A run is
         validated by the average and yields it.
-    augmented: whether the light of the windows is changed: see `training.crfnet2017.augmentation`
+    augmented: whether the light of the windows is changed: see `training.crfnet2017.windows.augmented`
     """
 
     steps: int = 8_200

@@ -4,34 +4,35 @@ Two stages (CRF-net paper, Sec. 3.3): to tell the 201 responses of DoRF apart an
 11 EMoR weights. The same command goes on with an interrupted run.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io
+import math
 import time
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor, nn
-from torch.optim.swa_utils import AveragedModel
 from tqdm import tqdm
 
-from crfnet_core.files import atomic_write, atomic_write_text
+from crfnet_core.files import atomic_write_text
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
-from training.crfnet2017.stages import STAGES, StageTask
 from training.crfnet2017.windows import TrainingScenes, Windows, draw_windows, read_splits
 from training.data.manifest import training_digest
-from training.network.moving_average import moving_average, resume_average
 from training.provenance import record_run
+from training.state import TrainingState, moving_average
 
 #: Validation windows, the seed that makes them the same for every run, and how many run at once.
 VALIDATION_WINDOWS, VALIDATION_SEED, VALIDATION_BATCH = 2000, 2017, 25
 
 #: Steps between validations, and seconds between checkpoints where no validation comes before.
 VALIDATE_EVERY, CHECKPOINT_SECONDS = 500, 300.0
+
+STAGES = ("classify", "regress")
 
 #: Columns of log.csv.
 LOG_COLUMNS = ("step", "train_loss", "validation")
@@ -52,39 +53,57 @@ class RunConfig:
     init: str = "none"
 
 
+class StageTask:
+    """The loss and the validation figure of a stage, for windows under `responses`, shape (N, 1024), of DoRF (N = 201).
+
+    "classify" has cross-entropy and top-1 accuracy, "regress" the distance of the EMoR weights and the mean E_est.
+    `squared` is as in `training.crfnet2017.recipes.Recipe`.
+    """
+
+    def __init__(self, stage: str, responses: Tensor, *, squared: bool) -> None:
+        basis, curves, device = EmorBasis.load(), responses.cpu().double().numpy(), responses.device
+        weights = basis.project(curves)
+        residuals = np.linalg.norm(basis.reconstruct(weights) - curves, axis=1)
+        self.classifies, self.squared = stage == "classify", squared
+        self.weights = torch.from_numpy(weights).float().to(device)
+        self.residuals = torch.from_numpy(residuals).float().to(device)
+        self.outputs = len(weights) if self.classifies else COMPONENTS
+
+    def loss(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return the loss, mean over the batch, of outputs (N, outputs) for the responses numbered `classes` (N,)."""
+        if self.classifies:
+            return nn.functional.cross_entropy(outputs, classes)
+        squares = self._squares(outputs, classes)
+        return squares.mean() / 2 if self.squared else (squares + 1e-8).sqrt().mean()
+
+    def figures(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return for every window, shape (N,), whether the right response scores highest (1 or 0), or E_est.
+
+        The basis is orthonormal, so E_est squared is the squared distance of the weights plus the squared distance
+        of the true response from the basis.
+        """
+        if self.classifies:
+            return (outputs.argmax(dim=1) == classes).float()
+        return (self._squares(outputs, classes) + self.residuals[classes].square()).sqrt()
+
+    def is_better(self, figure: float, others: list[float]) -> bool:
+        """Return whether a validation figure is better than all others."""
+        return figure > max(others, default=-math.inf) if self.classifies else figure < min(others, default=math.inf)
+
+    def _squares(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return the squared distances of the weights."""
+        return (outputs - self.weights[classes]).square().sum(dim=1)
+
+
 @dataclass
-class TrainingState:
-    """All that a run needs to go on; `averaged` is the moving average of the network's weights, `rows` the log."""
-
-    network: CRFNet
-    averaged: AveragedModel
-    optimizer: torch.optim.Optimizer
-    step: int = 0
-    rows: list[list[float]] = field(default_factory=list)
-
-    def save(self, path: Path) -> None:
-        """Write the checkpoint, whole or not at all; its "network" is the average, "moving" the weights that go on."""
-        parts = {"network": self.averaged.module, "moving": self.network, "optimizer": self.optimizer}
-        states = {name: part.state_dict() for name, part in parts.items()}
-        with atomic_write(path, overwrite=True) as temporary:
-            torch.save(states | {"step": self.step, "rows": self.rows}, temporary)
-
-    def resume(self, path: Path, device: torch.device) -> None:
-        """Go on from a checkpoint."""
-        state = torch.load(path, map_location=device, weights_only=True)
-        self.network.load_state_dict(state["moving"])
-        resume_average(self.averaged, state["network"])
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.step, self.rows = state["step"], state["rows"]
-
-
 class Trainer:
     """One stage of the training, from where `state` stands."""
 
-    def __init__(
-        self, config: RunConfig, task: StageTask, state: TrainingState, scenes: TrainingScenes, validation: Windows
-    ) -> None:
-        self.config, self.task, self.state, self.scenes, self.validation = config, task, state, scenes, validation
+    config: RunConfig
+    task: StageTask
+    state: TrainingState
+    scenes: TrainingScenes
+    validation: Windows
 
     def run(self, folder: Path, steps: range) -> None:
         """Do the steps; validate, log and save. The windows of a step depend on the seed and the step only."""
@@ -92,29 +111,24 @@ class Trainer:
         for step in tqdm(steps, desc=self.config.stage, unit="step", initial=steps.start, total=recipe.steps):
             seed = self.config.seed * 10**9 + step
             losses.append(self.step(draw_windows(self.scenes, recipe.batch, seed=seed, augment=recipe.augmented)))
-            if state.step % VALIDATE_EVERY == 0 or state.step == recipe.steps:
+            if state.done % VALIDATE_EVERY == 0 or state.done == recipe.steps:
                 self._validate(folder, float(torch.stack(losses).mean()))
                 losses.clear()
-            elif time.monotonic() - saved < CHECKPOINT_SECONDS and state.step != steps.stop:
+            elif time.monotonic() - saved < CHECKPOINT_SECONDS and state.done != steps.stop:
                 continue
             state.save(folder / "last.pt")
             saved = time.monotonic()
 
     def step(self, batch: Windows) -> Tensor:
         """Move the weights once and return the loss."""
-        recipe, optimizer = self.config.recipe, self.state.optimizer
-        for group in optimizer.param_groups:
-            group["lr"] = learning_rate(recipe, self.state.step) * group["factor"]
+        recipe = self.config.recipe
+        for group in self.state.optimizer.param_groups:
+            group["lr"] = learning_rate(recipe, self.state.done) * group["factor"]
         self.state.network.train()
         (inputs,) = batch.inputs(recipe.batch)
         loss = self.task.loss(self._outputs(self.state.network, inputs), batch.classes)
-        optimizer.zero_grad()
-        loss.backward()
-        if recipe.clip:
-            nn.utils.clip_grad_norm_(self.state.network.parameters(), recipe.clip)
-        optimizer.step()
-        self.state.averaged.update_parameters(self.state.network)
-        self.state.step += 1
+        self.state.move(loss, clip=recipe.clip)
+        self.state.done += 1
         return loss.detach()
 
     def validation_figure(self) -> float:
@@ -134,7 +148,7 @@ class Trainer:
         """Log a validation, and save the best average."""
         figure, rows = self.validation_figure(), self.state.rows
         is_better = self.task.is_better(figure, [row[2] for row in rows])
-        rows.append([self.state.step, loss, figure])
+        rows.append([self.state.done, loss, figure])
         if is_better:
             self.state.save(folder / "best.pt")
         text = io.StringIO()
@@ -145,13 +159,7 @@ class Trainer:
 
 
 def train(
-    scenes: TrainingScenes,
-    validation: Windows,
-    run: Path,
-    config: RunConfig,
-    *,
-    digest: str,
-    stop: int | None = None,
+    scenes: TrainingScenes, validation: Windows, run: Path, config: RunConfig, *, digest: str, stop: int | None = None
 ) -> TrainingState:
     """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
 
@@ -164,7 +172,7 @@ def train(
     task = StageTask(config.stage, scenes.curves, squared=config.recipe.squared)
     state = _start(config, task, run / "last.pt")
     trainer = Trainer(config, task, state, scenes, validation)
-    trainer.run(run, range(state.step, min(config.recipe.steps, stop or config.recipe.steps)))
+    trainer.run(run, range(state.done, min(config.recipe.steps, stop or config.recipe.steps)))
     return state
 
 

@@ -5,19 +5,17 @@ takes ten windows of each of five exposures of each of its 595 photographs under
 every window has a photograph of its own. `render` applies the response and rounds to 8 bits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE
-from training.crfnet2017.augmentation import augmented
-from training.data.curves import DORF_FILE, read_dorf
+from training.data.curves import read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
@@ -34,6 +32,12 @@ TRIED = 240
 #: Windows that are rendered at a time: a batch of an accelerator.
 PART = 256
 
+#: Part of the windows that are a blend of two scenes.
+BLENDED = 0.25
+
+#: Standard deviations: of the gains of white balance and of the exponent of contrast, in stops; and of a color matrix.
+GAINS, CONTRAST, MATRIX = 0.4, 0.3, 0.12
+
 
 @dataclass(frozen=True)
 class TrainingScenes:
@@ -48,7 +52,7 @@ class TrainingScenes:
     curves: Tensor
     exposures: Tensor
 
-    def to(self, device: torch.device) -> TrainingScenes:
+    def to(self, device: torch.device) -> Self:
         """Return the scenes on a device."""
         pixels = tuple(scene.to(device) for scene in self.pixels)
         return replace(self, pixels=pixels, curves=self.curves.to(device), exposures=self.exposures.to(device))
@@ -76,7 +80,7 @@ class Windows:
 def read_splits(data: Path) -> dict[str, TrainingScenes]:
     """Return the splits "train" and "validation" of the scenes in the folder `data`, with the responses of DoRF."""
     scenes = {split: read_scenes(data / "linear", split) for split in ("train", "validation")}
-    curves, luminance = read_dorf(data / DORF_FILE), reference_luminance(scenes["train"])
+    curves, luminance = read_dorf(data), reference_luminance(scenes["train"])
     exposures = torch.tensor([automatic_exposure(curve, luminance) for curve in curves], dtype=torch.float32)
     responses = torch.from_numpy(curves).float()
     return {
@@ -106,11 +110,11 @@ def draw_windows(scenes: TrainingScenes, count: int, *, seed: int, augment: bool
         torch.zeros(count, dtype=torch.int64, device=device),
         torch.zeros(count, device=device),
     )
-    pending = torch.arange(count, device=device)
+    pending, (low, high) = torch.arange(count, device=device), EXPOSURES
     for turn in range(TRIED * count):
         if turn % TRIED == 0:
             drawn.classes[pending] = _integers(len(scenes.curves), len(pending), generator)
-        drawn.exposures[pending] = _uniform(EXPOSURES, len(pending), generator)
+        drawn.exposures[pending] = low + (high - low) * torch.rand(len(pending), device=device, generator=generator)
         places = _places(scenes, len(pending), generator)
         parts = zip(pending.split(PART), places.split(PART), strict=True)
         covers = [_fill(drawn, scenes, *part, generator if augment else None) for part in parts]
@@ -129,6 +133,32 @@ def _fill(
         light = augmented(light, _crops(scenes, _places(scenes, len(index), generator)), generator)
     drawn.codes[index] = render(light, scenes, drawn.classes[index], drawn.exposures[index])
     return filled(drawn.codes[index]) >= FULL_COVERAGE
+
+
+def augmented(light: Tensor, other: Tensor, generator: torch.Generator) -> Tensor:
+    """Return light (N, 3, 227, 227), blended with `other` in some windows and changed as a whole, float32.
+
+    The paper has no augmentation, but 595 scenes. Mirroring, transposition, permuted channels, white balance, color
+    matrices and contrast, before the response, do not change what the response does; the strengths are ours.
+    """
+    count, device = len(light), light.device
+
+    def normal(*shape: int) -> Tensor:
+        return torch.randn(count, *shape, device=device, generator=generator)
+
+    def uniform() -> Tensor:
+        return torch.rand(count, 1, 1, 1, device=device, generator=generator)
+
+    part = torch.where(uniform() < BLENDED, uniform(), 0)
+    light = (1 - part) * light.float() + part * other.float()
+    light = torch.where(uniform() < 0.5, light.flip(3), light)
+    light = torch.where(uniform() < 0.5, light.transpose(2, 3), light)
+    order = torch.rand(count, 3, device=device, generator=generator).argsort(dim=1)
+    light = light.gather(1, order[:, :, None, None].expand_as(light))
+    matrix = torch.eye(3, device=device) + MATRIX * normal(3, 3)
+    matrix = matrix / matrix.sum(dim=2, keepdim=True)  # neutrals stay
+    light = torch.einsum("nij,njhw->nihw", torch.exp2(GAINS * normal(3, 1)) * matrix, light).clamp(min=0)
+    return light ** torch.exp2(CONTRAST * normal(1, 1, 1))
 
 
 def render(light: Tensor, scenes: TrainingScenes, classes: Tensor, exposures: Tensor) -> Tensor:
@@ -168,9 +198,3 @@ def _crops(scenes: TrainingScenes, places: Tensor) -> Tensor:
 def _integers(end: int, count: int, generator: torch.Generator) -> Tensor:
     """Return random numbers from 0 to end - 1, int64 (count,)."""
     return torch.randint(end, (count,), device=generator.device, generator=generator)
-
-
-def _uniform(ends: tuple[float, float], count: int, generator: torch.Generator) -> Tensor:
-    """Return uniform numbers between two ends, float32 (count,)."""
-    low, high = ends
-    return low + (high - low) * torch.rand(count, device=generator.device, generator=generator)

@@ -1,7 +1,5 @@
 """Camera responses to train and measure on: DoRF, in-camera base curves, and mixtures of each."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,9 +25,9 @@ DrawResponse = Callable[[np.random.Generator], Float64Array]
 HEADROOM = (0.4, 1.1)
 
 
-def read_dorf(path: Path) -> Float64Array:
-    """Return the 201 measured responses of DoRF, shape (201, 1024), at uniform irradiances."""
-    return np.asarray(scipy.io.loadmat(path)["B"], dtype=np.float64)
+def read_dorf(data: Path) -> Float64Array:
+    """Return the 201 measured responses of DoRF in a data folder, shape (201, 1024), at uniform irradiances."""
+    return np.asarray(scipy.io.loadmat(data / DORF_FILE)["B"], dtype=np.float64)
 
 
 def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:
@@ -90,15 +88,12 @@ class CurveSource:
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""
         if rng.random() < self.camera_fraction:
-            return self._warped(self._mixed(self._camera_curves(rng), rng), rng, self.warp / 2)
+            chosen = rng.integers(len(self.bases), size=2)
+            curves = np.stack([camera_response(self.bases[i], rng.uniform(*HEADROOM)) for i in chosen])
+            return self._warped(self._mixed(curves, rng), rng, self.warp / 2)
         if rng.random() < self.plain_fraction:
             return self.dorf[rng.integers(len(self.dorf))]
         return self._warped(self._mixed(self.dorf[rng.integers(len(self.dorf), size=3)], rng), rng, self.warp)
-
-    def _camera_curves(self, rng: np.random.Generator) -> Float64Array:
-        """Return two camera responses, each with its own headroom."""
-        chosen = rng.integers(len(self.bases), size=2)
-        return np.stack([camera_response(self.bases[i], rng.uniform(*HEADROOM)) for i in chosen])
 
     def _mixed(self, curves: Float64Array, rng: np.random.Generator) -> Float64Array:
         """Return a random convex mixture, most often near one of the curves."""

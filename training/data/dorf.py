@@ -6,8 +6,6 @@ file of 201 curves in six lines each: name, kind of the graph that it was read f
 brightnesses. All values are linear, whatever the kind of graph ("graph-log-log-neg" describes the axes of the source).
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

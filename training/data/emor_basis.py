@@ -1,7 +1,5 @@
 """Compute crfnet_core/data/emor.npz from the DoRF curves: ``python -m training.data.emor_basis --data DIR``."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
@@ -22,7 +20,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help=f"folder with {DORF_FILE} and {EMOR_FILE}")
     data = parser.parse_args().data
-    basis = EmorBasis.from_curves(read_dorf(data / DORF_FILE))
+    basis = EmorBasis.from_curves(read_dorf(data))
     published = read_published(data / EMOR_FILE)
     cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
     print("|cosine| with the published components:", np.round(cosines, 5))

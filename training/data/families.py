@@ -1,7 +1,5 @@
 """Draws of responses of every family, to train on and for the bank of the posterior."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ LibRaw develops camera raw without tone curve, sharpening or automatic brightnes
 and Radiance HDR files are read as they are. Each file becomes a half-float OpenEXR file and a row of manifest.csv.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io

@@ -1,9 +1,8 @@
 """In-camera responses: what measured bodies have in common, and how they differ, in the logarithm of irradiance."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -12,7 +11,7 @@ from crfnet_core.posterior.responses import LEAST_IRRADIANCE
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, geometric_median
-from training.data.real.photographs import Body
+from training.data.real_photographs import Body
 
 #: The kinds of bodies that have a center of their own.
 KINDS = ("phone", "compact", "camera")
@@ -55,7 +54,7 @@ class InCameraResponses:
     spreads: dict[str, float]
 
     @classmethod
-    def from_bodies(cls, bodies: Sequence[Body]) -> InCameraResponses:
+    def from_bodies(cls, bodies: Sequence[Body]) -> Self:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}

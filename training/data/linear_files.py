@@ -1,7 +1,5 @@
 """Scene-linear pictures from camera raw, OpenEXR and Radiance HDR files, scaled down in linear light."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

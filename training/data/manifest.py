@@ -5,8 +5,6 @@ SHA-256, and how it is used. The files themselves are no part of the repository.
 data folder with the manifest instead: it lists the files that are absent, altered or unlisted, and returns 2 if any.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import hashlib
@@ -19,13 +17,11 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text, file_sha256
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
-from training.data.scenes import split_scenes
+from training.data.scenes import split_scenes, table_rows
 
-#: The manifest of the data that the packaged models were trained and measured with.
+#: The manifest of the data that the packaged models were trained and measured with. Beside it, manifest_crfnet2017.csv
+#: lists 66 more scenes of crfnet2017-2.0 alone, which are in no data folder; their hashes are of the originals.
 MANIFEST_FILE = Path(__file__).with_name("manifest.csv")
-
-#: The 66 scenes that only crfnet2017-2.0 was trained on, which are in no data folder; the hashes are of the originals.
-CRFNET2017_FILE = Path(__file__).with_name("manifest_crfnet2017.csv")
 
 #: Comes with DoRF; nothing reads it.
 UNUSED = "dorf/invemor.txt"
@@ -89,8 +85,7 @@ def manifest_text(rows: Iterable[ManifestRow]) -> str:
 
 def read_manifest(path: Path = MANIFEST_FILE) -> list[ManifestRow]:
     """Return the rows of a manifest."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return [ManifestRow(**row) for row in csv.DictReader(file)]
+    return [ManifestRow(**row) for row in table_rows(path)]
 
 
 def differences(data: Path, listed: Sequence[ManifestRow]) -> list[str]:
@@ -170,10 +165,7 @@ def _case(case: dict[str, str], files: list[str], response: str, source: str, us
 
 def _table(path: Path) -> list[dict[str, str]]:
     """Return the rows of a table that comes with the data; none where it is absent."""
-    if not path.is_file():
-        return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return table_rows(path) if path.is_file() else []
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,7 +1,5 @@
 """The bank of responses that the posterior weighs: ``python -m training.data.response_bank --data DIR``."""
 
-from __future__ import annotations
-
 import argparse
 from io import BytesIO
 from pathlib import Path
@@ -13,10 +11,10 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import BANK_FILE, Family, ResponseBank
 from crfnet_core.posterior.responses import STORED_STEPS
 from crfnet_core.types import Float64Array
-from training.data.curves import DORF_FILE, CurveSource, read_dorf
+from training.data.curves import CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
-from training.data.real.photographs import RealPhotograph, measured_bodies
+from training.data.real_photographs import measured_bodies
 from training.data.splits import held_out_curves
 
 SEED = 2017
@@ -34,14 +32,14 @@ COUNTS = {
 }
 
 
-def make_bank(data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False) -> ResponseBank:
+def make_bank(data: Path, *, without: str | None = None, without_held_out: bool = False) -> ResponseBank:
     """Return the bank of the folder `data`, which holds dorf, real and real_bodies.
 
-    `without` leaves out the bodies of a photograph's fold, as `measured_bodies` does, and `without_held_out` the curves
-    of DoRF that P2 holds out.
+    `without` leaves out the bodies of a fold, as `measured_bodies` does, and `without_held_out` the curves of DoRF that
+    P2 holds out.
     """
     in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
-    dorf = read_dorf(data / DORF_FILE)
+    dorf = read_dorf(data)
     if without_held_out:
         dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
     film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)

@@ -1,11 +1,9 @@
 """Scene-linear photographs to train and measure on, split by scene."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import OpenImageIO as oiio
@@ -44,7 +42,7 @@ class Scene:
     is_panorama: bool
 
     @classmethod
-    def scaled(cls, name: str, pixels: Float32Array, is_panorama: bool) -> Scene:
+    def scaled(cls, name: str, pixels: Float32Array, is_panorama: bool) -> Self:
         """Return the scene of linear pixels (H, W, 3) of any scale."""
         luminance = pixels @ LUMINANCE
         return cls(name, pixels / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama)
@@ -57,8 +55,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
     only, so that they move no other.
     """
-    with (folder / "manifest.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = table_rows(folder / "manifest.csv")
     is_imported = [row.get("source", "").startswith(IMPORTED) for row in rows]
     listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
     scenes = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if not imported)
@@ -74,6 +71,12 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
         "validation": panoramas[first:second],
         "train": photographs[held_out:] + panoramas[second:] + more,
     }
+
+
+def table_rows(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a table that comes with the data."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:

@@ -4,8 +4,6 @@ Scenes are split in `training.data.scenes`. Curves are held out by whole groups,
 equal.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -15,7 +13,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Float64Array, IndexArray
-from training.data.curves import DORF_FILE, read_dorf
+from training.data.curves import read_dorf
 from training.data.scenes import SPLIT_SEED, split_scenes
 
 #: The splits that the packaged models were trained and measured with.
@@ -56,7 +54,7 @@ def held_out_curves(dorf: Float64Array) -> IndexArray:
 
 def compute_splits(data: Path) -> dict[str, Any]:
     """Return the entries of splits.json for the scenes and curves in the folder `data`."""
-    dorf = read_dorf(data / DORF_FILE)
+    dorf = read_dorf(data)
     scenes = split_scenes(data / "linear", with_imported=False)
     return {
         "seed": SPLIT_SEED,

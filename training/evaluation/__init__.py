@@ -8,4 +8,5 @@
 - `measure`: from photographs to rows of the table.
 - `report`: from rows to means, intervals, comparisons, and their report.
 - `protocols`: runs P0 to P6.
+- `paper_page`: docs/PAPER.md.
 """

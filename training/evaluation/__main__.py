@@ -8,8 +8,6 @@ that the table has are not measured again. With --quick the repository's own lig
 P4 measures DATA/real and, where it exists, DATA/real_bodies.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from pathlib import Path
@@ -17,12 +15,12 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from training.evaluation.models import Model
-from training.evaluation.plan import STRESS_PHOTOGRAPHS
-from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation, Settings
+from training.evaluation.protocols import PROTOCOLS, Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set, dorf_test_set
 
-#: The protocols of --quick, and the photographs of P0 and of the protocol paper.
-QUICK_PROTOCOLS, QUICK_COUNTS = ("p0", "paper"), (40, 5)
+#: The protocols of --quick; the most photographs of P0 and P2, and of the protocol paper under each condition: of the
+#: data, where 4020 are every response with every test scene, and with --quick.
+QUICK_PROTOCOLS, COUNTS, QUICK_COUNTS = ("p0", "paper"), (4020, 200), (40, 5)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -55,19 +53,17 @@ def parsed(arguments: list[str] | None = None) -> Evaluation:
         raise CRFNetError(f"the number of workers must be 1 or more, found {options.workers}; correct --workers")
     test_set = bundled_test_set() if options.quick else dorf_test_set(options.data)
     models = tuple(Model.find(name) for name in options.model)
-    possible = tuple(
-        name for name in PROTOCOLS if name != "p2" or all(each.lacks(test_set.held_out) for each in models)
-    )
-    photographs, stressed = QUICK_COUNTS if options.quick else (ALL_PHOTOGRAPHS, STRESS_PHOTOGRAPHS)
-    settings = Settings(
+    possible = [name for name in PROTOCOLS if name != "p2" or all(each.lacks(test_set.held_out) for each in models)]
+    photographs, stressed = QUICK_COUNTS if options.quick else COUNTS
+    return Evaluation(
         out=options.out,
+        test_set=test_set,
         models=models,
-        protocols=tuple(options.protocol or (QUICK_PROTOCOLS if options.quick else possible)),
+        protocols=options.protocol or (QUICK_PROTOCOLS if options.quick else possible),
         photographs=photographs if options.photographs is None else options.photographs,
+        stressed=stressed if options.stressed is None else options.stressed,
         workers=options.workers,
-        stress_photographs=stressed if options.stressed is None else options.stressed,
     )
-    return Evaluation(settings, test_set)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -75,10 +71,10 @@ def main(arguments: list[str] | None = None) -> None:
     started = time.monotonic()
     try:
         evaluation = parsed(arguments)
-        evaluation.run()
+        evaluate(evaluation)
     except CRFNetError as problem:
         raise SystemExit(str(problem)) from None
-    print(f"wrote {evaluation.settings.out / 'report.md'} in {time.monotonic() - started:.0f} s")
+    print(f"wrote {evaluation.out / 'report.md'} in {time.monotonic() - started:.0f} s")
 
 
 if __name__ == "__main__":

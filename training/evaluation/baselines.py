@@ -1,8 +1,6 @@
 """Baselines: guesses that ignore the photograph, and oracles that choose by the true response."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -57,12 +55,8 @@ def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
 
 def nearest_power(true: ResponseCurve) -> ResponseCurve:
     """Return the power law E ** p, p from 0.02 to 5, of least E_est against a response."""
-
-    def distance(logarithm: float) -> float:
-        return float(np.linalg.norm(true.brightness - IRRADIANCE ** np.exp(logarithm)))
-
-    best = minimize_scalar(distance, bounds=(np.log(0.02), np.log(5)), method="bounded")
-    return ResponseCurve.from_samples(IRRADIANCE ** np.exp(best.x))
+    best = _nearest(lambda logarithm: IRRADIANCE ** np.exp(logarithm), true, (np.log(0.02), np.log(5)))
+    return ResponseCurve.from_samples(IRRADIANCE ** np.exp(best))
 
 
 def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
@@ -73,13 +67,16 @@ def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
 
 def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCurve:
     """Return `curve` with the headroom of least E_est against a true response; its shape stays."""
-
-    def distance(stops: float) -> float:
-        return float(np.linalg.norm(true.brightness - with_headroom(curve, stops).brightness))
-
     bounds = (MOST_USED * float(np.log2(curve.inverse(SHOULDER))), MOST_ADDED)
-    best = minimize_scalar(distance, bounds=bounds, method="bounded")
-    return with_headroom(curve, float(best.x))
+    return with_headroom(curve, _nearest(lambda stops: with_headroom(curve, stops).brightness, true, bounds))
+
+
+def _nearest(samples: Callable[[float], Float64Array], true: ResponseCurve, bounds: tuple[float, float]) -> float:
+    """Return the number, within bounds, whose samples have the least E_est against a true response."""
+    found = minimize_scalar(
+        lambda number: float(np.linalg.norm(true.brightness - samples(number))), bounds=bounds, method="bounded"
+    )
+    return float(found.x)
 
 
 def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:

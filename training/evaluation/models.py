@@ -1,13 +1,13 @@
 """The models that an evaluation measures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.network import ModelConfig, model_folder, packaged_models
+from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder, packaged_models
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Model:
     held_out_curves: tuple[int, ...] = ()
 
     @classmethod
-    def find(cls, wanted: str) -> Model:
+    def find(cls, wanted: str) -> Self:
         """Return the model of this name in crfnet_core/models, or in the folder of this path.
 
         Raise CRFNetError if there is neither.
@@ -44,3 +44,9 @@ class Model:
     def lacks(self, held_out: Sequence[int]) -> bool:
         """Return whether these responses were kept out of training."""
         return set(held_out) <= set(self.held_out_curves)
+
+
+@cache
+def load_network(model: Model, *, threads: int = 0) -> ResponseNetwork:
+    """Return the network of a model, loaded once in a process; `threads` as in `ResponseNetwork.load`."""
+    return ResponseNetwork.load(model.folder, threads=threads)

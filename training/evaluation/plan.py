@@ -1,18 +1,17 @@
 """The simulated photographs: scene, response, exposure and condition of each, balanced and seeded."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
 from training.synthesis.camera import EXPOSURE_FACTORS, Capture
 
-#: Photographs of the protocol "paper", each under every condition.
-STRESS_PHOTOGRAPHS = 200
+#: Seed of everything random in an evaluation: the choice of photographs, dither, noise, pictures of P6 and bootstrap.
+SEED = 2017
 
 #: Factors on the exposure that no automatic exposure chooses (CRF-net paper, Fig. 7).
 SEVERE_EXPOSURES = (0.15, 4)
@@ -47,7 +46,7 @@ class Condition:
     jpeg_quality: int | None = None
 
     @property
-    def light(self) -> Condition:
+    def light(self) -> Self:
         """The part of the condition that comes before exposure: photographs that share it share the light."""
         return replace(self, name="", factor=1.0, noise=0.0, jpeg_quality=None)
 
@@ -96,7 +95,7 @@ class TestPhotograph:
         return f"scene {self.scene}, curve {self.curve}, exposure {factor:g}, {name}"
 
 
-def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[tuple[int, int, float]]:
+def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int) -> list[tuple[int, int, float]]:
     """Return `count` triples (scene, response, exposure factor), at most one for each scene and response.
 
     Both are shuffled and then taken in turn, shifted where the turns would repeat. So every scene and every response
@@ -106,7 +105,7 @@ def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: 
     """
     if count < 1:
         raise CRFNetError(f"the number of photographs must be 1 or more, found {count}")
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     scenes, curves = (rng.permutation(np.asarray(part)).tolist() for part in (scenes, curves))
     period, factors = math.lcm(len(scenes), len(curves)), len(EXPOSURE_FACTORS)
     return [
@@ -119,27 +118,22 @@ def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: 
     ]
 
 
-def clean_photographs(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[TestPhotograph]:
+def clean_photographs(scenes: Sequence[int], curves: Sequence[int], *, count: int) -> list[TestPhotograph]:
     """Return the photographs of P0 and P2: clean, each at one of five exposures, through the product as it is."""
-    cells = balanced(scenes, curves, count=count, seed=seed)
+    cells = balanced(scenes, curves, count=count)
     return [TestPhotograph(scene, curve, Condition("clean", factor=factor)) for scene, curve, factor in cells]
 
 
 def stress_photographs(
-    scenes: Sequence[int],
-    curves: Sequence[int],
-    *,
-    count: int,
-    seed: int,
-    conditions: Sequence[Condition] = CONDITIONS,
-    originals: Sequence[int] = (),
+    scenes: Sequence[int], originals: Sequence[int], curves: Sequence[int], *, count: int
 ) -> list[TestPhotograph]:
     """Return the photographs of the protocol "paper": `count` of them under every condition.
 
-    `originals`: numbers of the scenes that `RESOLUTIONS` are made of.
+    `RESOLUTIONS` are made of `originals`, and left out without any.
     """
     photographs = []
-    for condition in conditions:
-        cells = balanced(originals if condition.averaged else scenes, curves, count=count, seed=seed)
-        photographs += [TestPhotograph(scene, curve, condition) for scene, curve, _ in cells]
+    for condition in CONDITIONS:
+        if sources := originals if condition.averaged else scenes:
+            cells = balanced(sources, curves, count=count)
+            photographs += [TestPhotograph(scene, curve, condition) for scene, curve, _ in cells]
     return photographs

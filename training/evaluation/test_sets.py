@@ -1,7 +1,5 @@
 """Test sets: scenes, responses, and the exposure s_crf that belongs to each response."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +12,7 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
+from training.data.curves import IRRADIANCE, read_dorf
 from training.data.linear_files import read_raw
 from training.data.scenes import BAND, Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
@@ -29,7 +27,6 @@ LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
 #: scenes: about as in the training scenes, each scaled to a geometric mean of 1.
 REFERENCE_STOPS = 2.0
-
 
 #: The kind of a camera's raw file.
 RAW = "raw photograph"
@@ -99,7 +96,7 @@ def dorf_test_set(data: Path) -> TestSet:
     Raise CRFNetError if the split of the data differs from training/data/splits.json.
     """
     held_out = checked_splits(data)["held_out_curves"]
-    curves = read_dorf(data / DORF_FILE)
+    curves = read_dorf(data)
     files = split_scenes(data / "linear", with_imported=False)["test"]
     scenes = tuple(
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
@@ -143,7 +140,7 @@ def training_luminance(data: Path) -> Float32Array:
     return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
 
 
-def log_normal_luminance(size: int = 4096) -> Float32Array:
-    """Return evenly spaced quantiles, float32 (size,), of a log-normal luminance with a geometric mean of 1."""
-    quantiles = norm.ppf((np.arange(size) + 0.5) / size)
+def log_normal_luminance() -> Float32Array:
+    """Return evenly spaced quantiles, float32 (4096,), of a log-normal luminance with a geometric mean of 1."""
+    quantiles = norm.ppf((np.arange(4096) + 0.5) / 4096)
     return np.exp2(REFERENCE_STOPS * quantiles).astype(np.float32)

@@ -1,25 +1,132 @@
 """The library of measured cameras that comes with the product: ``python -m training.export.cameras DATA``.
 
-It is made of the measured responses of DATA/real_bodies (`training.data.real.stacks`): measurements, no photographs. A
-body has an entry for each setting, by the most certain stack.
+It is made of the measured responses of DATA/real_bodies: measurements, no photographs. Left out are stacks that a
+program developed or edited, since their response is the program's; stacks of grade C, whose scale is off by half a
+stop; and bodies of unknown make and model. No file says in which picture mode it was taken: two stacks of a body are
+taken for one setting of it unless their responses differ by more than `SAME_SETTING` standard deviations. A body has an
+entry for each setting, by the most certain stack.
 """
 
-from __future__ import annotations
-
 import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
-from crfnet_core.library import Camera, CameraLibrary
-from training.data.real.stacks import measured_camera, settings_of_bodies
+import numpy as np
+
+from crfnet_core.library import Camera, CameraLibrary, CameraSettings
+from crfnet_core.library.answer import brightness_per_stop
+from crfnet_core.photograph.metadata.editors import is_editor
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error
+from training.data.in_camera import log_irradiance, response_of
+from training.data.real_photographs import (
+    REAL_BODIES,
+    TRUSTED_GRADES,
+    caution,
+    metadata_of_case,
+    read_measured,
+)
+from training.data.scenes import table_rows
+
+#: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
+SAME_SETTING = 2.0
+
+#: Standard deviation of the shape of the measured responses of DATA/real_bodies, in stops, as its README states it.
+SHAPE_STOPS = 0.05
+
+#: Decimals of the responses: their least step is 1e-7.
+DECIMALS = 8
+
+#: How the names of bodies begin whose make and model nobody knows.
+UNKNOWN_BODY = "unknown"
+
+#: Words in `use` of DATA/real_bodies for a file that its publisher developed or edited.
+DEVELOPED = "edited/developed by software"
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A measured exposure stack.
+
+    settings: the camera and its settings, as the files state them
+    error: standard deviation of its E_est
+    frames: number of exposures, or nothing where the list has none
+    caution: why it is less certain, or nothing
+    """
+
+    settings: CameraSettings
+    curve: ResponseCurve
+    error: float
+    frames: str
+    grade: str
+    caution: str
+
+    def is_like(self, other: Self) -> bool:
+        """Return whether two stacks may be of one setting."""
+        expected = float(np.hypot(self.error, other.error))
+        return estimation_error(self.curve, other.curve) <= SAME_SETTING * expected
 
 
 def measured_cameras(data: Path) -> list[Camera]:
     """Return the cameras of DATA/real_bodies, sorted by name."""
+    folder = data / REAL_BODIES
+    stacks = {row["stack"]: _stack(folder, row) for row in table_rows(folder / "cases.csv") if _is_taken(row)}
+    bodies: dict[str, list[list[Stack]]] = {}
+    for stack in sorted(stacks.values(), key=lambda stack: (stack.settings.camera, stack.error)):
+        settings = bodies.setdefault(stack.settings.camera, [])
+        like = next((others for others in settings if others[0].is_like(stack)), None)
+        if like is None:
+            settings.append([stack])
+        else:
+            like.append(stack)
     return [
-        measured_camera(name, stacks)
-        for settings in settings_of_bodies(data).values()
-        for name, stacks in settings.items()
+        measured_camera(body if len(settings) == 1 else f"{body} ({number})", stacks)
+        for body, settings in bodies.items()
+        for number, stacks in enumerate(settings, 1)
     ]
+
+
+def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
+    """Return the camera of a setting: the response of its first stack, smoothed, with the sensitivities of all.
+
+    Without smoothing, its slope in stops changes within a code by up to eleven times near white: the plate gets bands.
+    """
+    first = stacks[0]
+    total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
+    shape = min(SHAPE_STOPS, total)
+    best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
+    frames = f"{first.frames} exposures" if first.frames else "an exposure stack"
+    iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
+    return Camera(
+        name=name,
+        curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
+        shape_stops=round(shape, 3),
+        scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
+        source=f"{frames} (grade {first.grade}{best})",
+        settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
+        warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
+    )
+
+
+def _is_taken(row: Mapping[str, str]) -> bool:
+    """Return whether the stack of a row is one of the library: see the head of the module."""
+    is_edited = DEVELOPED in row["use"] or is_editor(row["exif_software"])
+    return row["grade"] in TRUSTED_GRADES and not is_edited and not row["body"].startswith(UNKNOWN_BODY)
+
+
+def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
+    """Return the stack of a row."""
+    settings = CameraSettings.from_metadata(metadata_of_case(row))
+    return Stack(
+        settings=settings if settings.camera else replace(settings, model=row["body"]),
+        curve=read_measured(folder / row["gt"]),
+        error=float(row["uncertainty_L2"]),
+        frames=row["n_frames"],
+        grade=row["grade"],
+        caution=caution(row),
+    )
 
 
 def main() -> None:

@@ -4,8 +4,6 @@ The report is the report.json of `training.evaluation`. Its overall figures go i
 the model card.
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -15,11 +13,13 @@ from crfnet_core.files import atomic_write_text
 from crfnet_core.network import ModelConfig
 from crfnet_core.statistics import LENGTH
 from training.data.scenes import VALIDATION_SCENES
+from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
+from training.evaluation.measure.figures import ERRORS
 from training.evaluation.report import paper
-from training.evaluation.report.card import accuracy, accuracy_table, bodies_table
-from training.evaluation.report.document import Report, read_report
+from training.evaluation.report.document import Report, read_report, value
+from training.evaluation.report.markdown import markdown_table
 
-#: The introductions of the cards, one for each input of networks; the names in braces are filled in.
+#: The introductions of the cards, one for each input of networks, and the figures; names in braces are filled in.
 TEMPLATES = Path(__file__).with_name("model_card_templates")
 
 ALL_CURVES = (
@@ -29,6 +29,15 @@ ALL_CURVES = (
 HELD_OUT_CURVES = (
     "{count} of the 201 DoRF curves, and all mixtures with them, are left out: P2 below is measured on these."
 )
+
+#: The baselines in model.json, and in the table of bodies.
+CARD_BASELINES, BODY_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES), (GAMMA, OTHER_BODIES)
+
+#: The protocols in model.json.
+CARD_PROTOCOLS = ("P0", "P2", "P4 real", "P4 real_bodies", "P4 both")
+
+#: The figures of a model in model.json.
+CARD_FIGURES = tuple(f"{error} {name}" for error in ERRORS for name in ("mean", "median", "p90", "ratio", "win rate"))
 
 
 def introduction(folder: Path, config: ModelConfig) -> str:
@@ -46,20 +55,76 @@ def introduction(folder: Path, config: ModelConfig) -> str:
 
 def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
     """Return the text of the model card."""
-    on_p2 = " P2: the same of responses held out of training." if report.table("P2") else ""
-    parts = [
-        introduction(folder, config),
-        "## Accuracy\n",
-        "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
-        f"{on_p2} P4: real photographs with measured responses, means over bodies, with a"
-        " prior that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were"
-        " chosen on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an"
-        f" E_est of {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
-        accuracy_table(config.accuracy),
-        bodies_table(report, config.name),
-        "How it is made and measured: `training/README.md`.",
-    ]
-    return "\n".join(parts) + "\n"
+    figures = (
+        (TEMPLATES / "accuracy.md")
+        .read_text()
+        .format(
+            on_p2=" P2: the same of responses held out of training." if report.table("P2") else "",
+            paper=paper,
+            accuracy=accuracy_table(config.accuracy),
+            bodies=bodies_table(report, config.name),
+        )
+    )
+    return f"{introduction(folder, config)}\n{figures}"
+
+
+def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
+    """Return the figures of one model for model.json: protocol -> name of a figure -> value, without intervals.
+
+    P4 counts the photographs without caution. Figures of a baseline end in its name, and are means.
+    """
+    figures: dict[str, dict[str, float]] = {}
+    for protocol in CARD_PROTOCOLS:
+        if row := report.row(protocol, model):
+            counts = {name: row[name] for name in ("photographs", "bodies") if name in row}
+            own = {name: value(row[name]) for name in (*CARD_FIGURES, "PSNR of the mean")}
+            for name in CARD_BASELINES:
+                if other := report.row(protocol, name):
+                    own |= {f"{error} {name}": value(other[f"{error} mean"]) for error in ERRORS}
+            figures[protocol] = counts | dict(sorted(own.items())) | _stated(report, protocol, model)
+    if row := report.row("P6", model):
+        stripped = report.row("P6", f"{model}, without metadata")
+        figures["P6"] = {
+            "photographs": row["photographs"],
+            "accepted": row["accepted fraction"],
+            "accepted without metadata": stripped["accepted fraction"],
+        }
+    return figures
+
+
+def _stated(report: Report, protocol: str, model: str) -> dict[str, float]:
+    """Return the figures of P5 of one model on one protocol."""
+    figures: dict[str, float] = {}
+    for error in ("E_est", "shape"):
+        row = report.row(f"P5 {error}", model, protocol)
+        figures |= {
+            f"expected {error} mean": row["stated mean"],
+            f"expected {error} rank correlation": row["rank correlation"],
+            "band coverage": row["band coverage"],
+        }
+    return figures
+
+
+def accuracy_table(figures: dict[str, dict[str, float]]) -> str:
+    """Return the Markdown table of what `accuracy` returned: a row for each figure, a column for each protocol."""
+    names = dict.fromkeys(name for column in figures.values() for name in column)
+    rows = [[name, *(f"{column[name]:g}" if name in column else "" for column in figures.values())] for name in names]
+    return markdown_table(["", *figures], rows)
+
+
+def bodies_table(report: Report, model: str) -> str:
+    """Return the Markdown table of the bodies of P4; empty without P4."""
+    lines = []
+    for row in report.rows:
+        if row["table"].endswith(" by body") and row["estimator"] == model:
+            others = [report.row(row["table"], name, row["group"]) for name in BODY_BASELINES]
+            cells = [f"{each[f'{error} mean']:.2f}" for error in ("E_est", "shape") for each in (row, *others)]
+            expected = f"{row['expected E_est mean']:.2f}"
+            lines.append([row["group"], row["grade"], str(row["photographs"]), *cells, expected])
+    names = ["", *(f", {name}" for name in BODY_BASELINES)]
+    errors = [error + name for error in ("E_est", "shape") for name in names]
+    header = ["body (P4)", "grade", "photographs", *errors, "expected E_est"]
+    return markdown_table(header, lines) if lines else ""
 
 
 def checked_report(path: Path, config: ModelConfig) -> Report:

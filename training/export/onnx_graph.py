@@ -1,7 +1,5 @@
 """From a PyTorch network to an ONNX graph with matrices in half precision."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar

@@ -5,7 +5,6 @@ start                where a run begins: a checkpoint, a model folder, or random
 features             statistics as the input of the network
 model                the network
 loss                 how probable the evidence makes the true response, and how far the mean answer is from it
-moving_average       the average of the weights, which a run yields
 train                the command that trains
 average              the mean of the weights of several runs
 """

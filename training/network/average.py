@@ -6,8 +6,6 @@ ICML 2022. A mean with the network before also keeps what the later run forgets:
 models", CVPR 2022.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Sequence
@@ -43,7 +41,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     parts = [share / sum(shares) for share in shares]
     out.mkdir(parents=True, exist_ok=True)
     with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
-        torch.save({"net": weighted_mean(networks, parts)}, temporary)
+        torch.save({"network": weighted_mean(networks, parts)}, temporary)
     largest = records[parts.index(max(parts))]
     averaged = [_part(*one) for one in zip(sources, records, parts, strict=True)]
     write_json(out / RUN_FILE, largest | {"average": averaged})

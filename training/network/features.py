@@ -3,8 +3,6 @@
 Sums grow with the number of samples, means do not: the network reads one window and several together alike.
 """
 
-from __future__ import annotations
-
 import math
 
 import torch

@@ -1,7 +1,5 @@
 """The loss (docs/METHOD.md, Eq. 19): the posterior of the truth among other responses, and the error of its mean."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor
 

@@ -1,7 +1,5 @@
 """The photograph network: statistics of windows in, evidence about the response out."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch

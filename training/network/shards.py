@@ -20,7 +20,7 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import UNUSUAL, Family
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.statistics import window_statistics
-from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawResponse, read_base_curves, read_dorf
+from training.data.curves import BASE_CURVES_FILE, CurveSource, DrawResponse, read_base_curves, read_dorf
 from training.data.families import edited
 from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
@@ -109,7 +109,7 @@ class Shards:
 @cache
 def photograph_source(data: Path, split: str) -> PhotographSource:
     """Return the source of a split's photographs; the exposure always comes from the training scenes."""
-    dorf = read_dorf(data / DORF_FILE)
+    dorf = read_dorf(data)
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
     bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
     in_camera = CurveSource(dorf, bases, camera_fraction=1).draw

@@ -1,7 +1,5 @@
 """Start a training from the weights of another run or of a packaged model."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import onnx
@@ -30,7 +28,7 @@ def read_weights(net: PhotographNet, source: Path) -> dict[str, Tensor]:
     Raise SystemExit if a model folder holds another network than one like `net`.
     """
     file = _weights_file(source)
-    return dict(torch.load(file, weights_only=True)["net"]) if file == source else _packaged_state(net, file)
+    return dict(torch.load(file, weights_only=True)["network"]) if file == source else _packaged_state(net, file)
 
 
 def start_record(source: Path | None) -> str:

@@ -1,7 +1,5 @@
 """Train the photograph network on shards of statistics: ``python -m training.network.train --shards DIR --run DIR``."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 from dataclasses import asdict, dataclass
@@ -9,16 +7,14 @@ from pathlib import Path
 
 import torch
 from torch import Tensor
-from torch.optim.swa_utils import AveragedModel
 from tqdm import tqdm
 
-from crfnet_core.files import atomic_write
 from training.network.loss import EvidenceLoss
 from training.network.model import NetworkConfig, PhotographNet
-from training.network.moving_average import moving_average, resume_average
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
 from training.network.start import start_from, start_record
 from training.provenance import data_record, record_run
+from training.state import TrainingState, moving_average
 
 #: The file of the last checkpoint in the folder of a run.
 CHECKPOINT = "last.pt"
@@ -60,38 +56,6 @@ class TrainingConfig:
     seed: int = 1
 
 
-@dataclass
-class TrainingState:
-    """All that a run needs to go on from where it stopped; `averaged` is the moving average of the weights of `net`."""
-
-    net: PhotographNet
-    averaged: AveragedModel
-    optimizer: torch.optim.Optimizer
-    schedule: torch.optim.lr_scheduler.OneCycleLR
-    epoch: int = 0
-
-    def save(self, path: Path) -> None:
-        """Write the checkpoint, whole or not at all; its "net" is the average, "moving" the weights that go on."""
-        parts = {
-            "net": self.averaged.module,
-            "moving": self.net,
-            "optimizer": self.optimizer,
-            "schedule": self.schedule,
-        }
-        entries = {name: part.state_dict() for name, part in parts.items()}
-        with atomic_write(path, overwrite=True) as temporary:
-            torch.save(entries | {"epoch": self.epoch}, temporary)
-
-    def resume(self, path: Path) -> None:
-        """Go on from a checkpoint."""
-        entries = torch.load(path, weights_only=True)
-        resume_average(self.averaged, entries["net"])
-        self.net.load_state_dict(entries["moving"])
-        self.optimizer.load_state_dict(entries["optimizer"])
-        self.schedule.load_state_dict(entries["schedule"])
-        self.epoch = entries["epoch"]
-
-
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
@@ -108,13 +72,16 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     if (run / CHECKPOINT).exists():
         state.resume(run / CHECKPOINT)
     elif init is not None:
-        start_from(state.net, init)
-    loss = _loss(photographs, config)
-    while state.epoch < config.epochs:
+        start_from(state.network, init)
+    # The truth competes with responses of training photographs, drawn by the seed.
+    chosen = torch.randperm(len(photographs.weights), generator=torch.Generator().manual_seed(config.seed))
+    competitors = photographs.only(chosen[:COMPETITORS])
+    loss = EvidenceLoss(competitors.weights, competitors.families)
+    while state.done < config.epochs:
         train_loss = _train_epoch(state, loss, photographs, config)
         window_error, error = validation_errors(state.averaged.module, loss, held_out)
         with (run / "log.csv").open("a", newline="") as file:
-            csv.writer(file).writerow([state.epoch, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
+            csv.writer(file).writerow([state.done, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
         state.save(run / CHECKPOINT)
     return run / CHECKPOINT
 
@@ -131,12 +98,6 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             losses.append(loss.of_each(evidence, weights, families))
             errors.append(loss.errors(evidence, weights)[families == 0])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
-
-
-def _loss(shards: Shards, config: TrainingConfig) -> EvidenceLoss:
-    """Return the loss in which the truth competes with responses of training photographs, drawn by the seed."""
-    chosen = torch.randperm(len(shards.weights), generator=torch.Generator().manual_seed(config.seed))[:COMPETITORS]
-    return EvidenceLoss(shards.weights[chosen], shards.families[chosen])
 
 
 def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
@@ -166,26 +127,21 @@ def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> 
 
 def _train_epoch(state: TrainingState, loss: EvidenceLoss, shards: Shards, config: TrainingConfig) -> float:
     """Run one epoch, in an order that depends on the seed and the epoch only, and return the mean loss."""
-    torch.manual_seed(config.seed * 1000 + state.epoch)
+    torch.manual_seed(config.seed * 1000 + state.done)
     order = torch.randperm(len(shards.weights))
     batches = order[: len(order) // config.batch * config.batch].split(config.batch)
     total, families = 0.0, shards.families
-    state.net.train()
-    for rows in tqdm(batches, desc=f"epoch {state.epoch + 1}/{config.epochs}", leave=False, disable=None):
+    state.network.train()
+    for rows in tqdm(batches, desc=f"epoch {state.done + 1}/{config.epochs}", leave=False, disable=None):
         statistics, weights = shards.batch(rows)
         present = _random_windows(statistics.shape[:2], config.all_windows)
         with torch.autocast("cpu", torch.bfloat16, enabled=config.mixed):
-            windows, photographs = state.net(statistics, present)
+            windows, photographs = state.network(statistics, present)
         evidence = tuple(part.float() for part in windows), tuple(part.float() for part in photographs)
         value = loss(evidence, present, weights, families[rows])
-        state.optimizer.zero_grad()
-        value.backward()
-        torch.nn.utils.clip_grad_norm_(state.net.parameters(), CLIP)
-        state.optimizer.step()
-        state.schedule.step()
-        state.averaged.update_parameters(state.net)
+        state.move(value, clip=CLIP)
         total += float(value.detach())
-    state.epoch += 1
+    state.done += 1
     return total / len(batches)
 
 

@@ -1,7 +1,5 @@
 """Augmentation: other light, colors and compositions for the linear windows of the few scenes that there are."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import gaussian_filter
 

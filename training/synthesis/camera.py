@@ -5,12 +5,10 @@ response, sharpening and grain, 8-bit rounding, JPEG (`simulate_capture`). `rend
 estimator reads it.
 """
 
-from __future__ import annotations
-
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from PIL import Image
@@ -48,7 +46,7 @@ class Capture:
     subsampled: bool = True
 
     @classmethod
-    def draw(cls, rng: np.random.Generator) -> Capture:
+    def draw(cls, rng: np.random.Generator) -> Self:
         """Return the capture of a random camera; most have some noise and compress."""
         return cls(
             shot_noise=10 ** rng.uniform(-5, -3) if rng.random() < 0.7 else 0.0,
@@ -75,10 +73,10 @@ def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
     return float(2**low)
 
 
-def reference_luminance(scenes: list[Scene], *, each: int = 64) -> Float32Array:
-    """Return the luminance of `each` evenly spread samples of every scene, for `automatic_exposure`."""
+def reference_luminance(scenes: list[Scene]) -> Float32Array:
+    """Return the luminance of 64 evenly spread samples of every scene, for `automatic_exposure`."""
     luminances = [(scene.pixels.reshape(-1, 3) @ LUMINANCE) for scene in scenes]
-    return np.concatenate([luminance[:: max(1, len(luminance) // each)][:each] for luminance in luminances])
+    return np.concatenate([luminance[:: max(1, len(luminance) // 64)][:64] for luminance in luminances])
 
 
 def sensor_light(

@@ -1,9 +1,8 @@
 """Random cameras that develop: what each kind of file went through, with the shares and ranges of real ones."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 from PIL import Image
@@ -42,7 +41,7 @@ class Frames:
     side: int
 
     @classmethod
-    def draw(cls, kind: FrameKind, rng: np.random.Generator) -> Frames:
+    def draw(cls, kind: FrameKind, rng: np.random.Generator) -> Self:
         """Return the frames of a kind. Where they are point-sampled, several windows come from each."""
         if kind is FrameKind.SAMPLED:
             step = int(rng.choice((2, 3), p=(0.9, 0.1)))

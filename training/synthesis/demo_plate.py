@@ -8,8 +8,6 @@ noise, a response of the in-camera kind, 8 bits, JPEG. The same source gives the
 `training.synthesis.camera`, so the plate stays the same when training changes.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -5,8 +5,6 @@ noise reduction, chroma and sharpening of the encoded picture, JPEG (`picture`),
 point sampling of a frame larger than the window. The label of a photograph is the response, the tone curve alone.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Training photographs: windows of a scene as random cameras would have recorded them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -104,7 +102,11 @@ class PhotographSource:
         light = recolor(light, rng, cast=CASTS[develops])
         light = relight(light, rng, contrasted=contrasted, contrast=contrast)
         drawn = (self._photograph(light, kind, rng) for _ in range(CAMERAS))
-        return [photo for photo in drawn if photo.curve_set in self.unusual or _fills_codes(photo)]
+        return [
+            photo
+            for photo in drawn
+            if photo.curve_set in self.unusual or max(map(filled_codes, photo.windows)) >= LEAST_FILLED
+        ]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
         """Return a response, shape (1024,), and the number of its set."""
@@ -144,11 +146,6 @@ class PhotographSource:
         if rng.random() < AUTOMATIC:
             return automatic_exposure(curve, self.luminance) * rng.uniform(*FACTORS[develops])
         return 1 / max(float(np.percentile(light[:, ::4, ::4].max(axis=-1), rng.uniform(*SATURATED[develops]))), 1e-6)
-
-
-def _fills_codes(photo: TrainingPhotograph) -> bool:
-    """Return whether the best window of a photograph fills `LEAST_FILLED` codes."""
-    return max(map(filled_codes, photo.windows)) >= LEAST_FILLED
 
 
 def _unusual_photograph(

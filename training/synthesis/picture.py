@@ -3,8 +3,6 @@
 Pictures are three planes, red, green and blue, each float32 (N, S, S) in [0, 1], of N frames.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,8 +1,7 @@
 """Affine resampling: windows of a scene at any angle and scale, so that few scenes give many windows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from PIL import Image
@@ -41,7 +40,7 @@ class AffineResampling:
     side: int = WINDOW_SIZE
 
     @classmethod
-    def draw(cls, scene: Scene, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> AffineResampling:
+    def draw(cls, scene: Scene, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> Self:
         """Return a window at a random position, angle, scale and stretch; a larger one shows more, in finer samples."""
         largest = SCALES[1] * min(1.0, 1.6 * WINDOW_SIZE / side)
         smallest = min(SCALES[0] * np.sqrt(side / WINDOW_SIZE), largest / 2)

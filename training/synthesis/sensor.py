@@ -3,8 +3,6 @@
 Pictures are three planes, red, green and blue, each float32 (N, S, S), of N frames.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache

@@ -35,13 +35,6 @@ class CRF_OT_compare(bpy.types.Operator):
     is_after: bpy.props.BoolProperty(name="After", description="Show the linear plate", options={"SKIP_SAVE"})
 
     @classmethod
-    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip of one of the two buttons."""
-        if properties.is_after:
-            return "Show the linear plate with the present exposure. Nothing but the view changes"
-        return "Show the plate as it is in the file"
-
-    @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether an Image Editor shows a plate with an estimate."""
         return _is_image_editor(context) and stored_estimate.is_stored(plates.active_datablock(context))
@@ -134,7 +127,7 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
         if hasattr(user, "frame_duration"):  # not the plate's node group
             with suppress(*expected_errors()):  # reported where a response is estimated
                 frames = lazy_import.load(".work.frame_files").frames_of(plates.plate_of(image)).numbers
-                compositor.FrameTiming.from_scene_start(frames).set_on(user)
+                compositor.FrameTiming.by_number(frames, start=1).set_on(user)
         return {"FINISHED"}
 
 

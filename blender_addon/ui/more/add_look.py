@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ... import lazy_import
-from ...scene import plates, stored_estimate
+from ...scene import color_management, plates, stored_estimate
 from ...work.errors import expected_errors
 from ..operator_base import NO_ESTIMATE, ChosenPlate, failed
 
@@ -17,17 +17,15 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
     bl_idname = "crf.add_look"
     bl_label = "Add Camera Look"
     bl_description = (
-        "Put the camera's response before the output of the compositor: scene-linear light gets the look of the plate."
-        " Set View Transform to Standard and Look to None: the render, and files saved from it, then match the plate."
-        " For Raw, use the output Code Values"
+        "Put the camera's response before the output of the compositor, and set View Transform to Standard: the render,"
+        " and files saved from it, look like the photograph, code by code. It is then not linear any more. For the view"
+        " Raw, use the output Code Values"
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:
-        """Return that this is not the compositor, or that its plate has no response."""
-        if context.area.type != "NODE_EDITOR":
-            return "The look is added in the compositor"
+        """Return that the plate has no response."""
         return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -39,7 +37,9 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
             lazy_import.load(".scene.look_group").add_look(tree, plate, plates.name_of(plate), curve, stops)
         except expected_errors() as problem:
             return failed(self, problem)
-        self.report({"INFO"}, f"{plate.name}: its look is before the output; set View Transform to Standard")
+        is_matched = color_management.set_standard_view(context.scene)
+        view = "View Transform is Standard now" if is_matched else "choose a View Transform without tone mapping"
+        self.report({"INFO"}, f"{plate.name}: its look is before the output; {view}")
         return {"FINISHED"}
 
 

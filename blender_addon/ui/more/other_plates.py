@@ -134,7 +134,7 @@ def _job(source: plates.Datablock, target: plates.Datablock) -> "Job":
     A bake may take long, so each plate gets it by its own Apply; until then the response is only stored.
     """
     settings = source.camera_response_settings
-    arguments = {name: getattr(settings, name) for name in CHOICES}
+    arguments = {name: getattr(settings, name) for name in CHOICES} | {"compose": False}
     if arguments["apply"] == "BAKE":
         arguments["apply"] = "ESTIMATE"
     job = lazy_import.load(".ui.gather").gather_job(target, is_estimated=False, arguments=arguments)
@@ -159,12 +159,10 @@ def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> 
 
 def _what_was_done(source: plates.Datablock) -> str:
     """Return in words how the response was applied to the other plates."""
-    mode = source.camera_response_settings.apply
-    if stored_estimate.verdict(source) == stored_estimate.DO_NOT_TRUST and mode != "ESTIMATE":
+    if stored_estimate.verdict(source) == stored_estimate.DO_NOT_TRUST:
         return "it is stored only, because it is not to be trusted"
-    if mode == "BAKE":
-        return "bake each with its own Apply"
-    return "it is stored only" if mode == "ESTIMATE" else "it is applied as to this plate"
+    is_baked = source.camera_response_settings.apply == "BAKE"
+    return "bake each with its own Apply" if is_baked else "it is applied as to this plate"
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OtherPlate, CRF_OT_copy_response))

@@ -21,41 +21,32 @@ SIGNATURES = {
 #: How scene-linear files begin: they are refused.
 LINEAR_SIGNATURES = {"OpenEXR": (b"\x76\x2f\x31\x01",), "Radiance HDR": (b"#?RADIANCE", b"#?RGBE")}
 
-#: Suffixes of camera raw. Some of these files are read as their small preview, which must not pass for the photograph.
+#: Suffixes of camera raw, whose small preview must not pass for the photograph; how raw files begin that are not plain
+#: TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
 RAW_SUFFIXES = (
     *(".3fr", ".ari", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos"),
     *(".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"),
 )
-
-#: How raw files begin that are not plain TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
 #: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, ExtraSamples, DNGVersion.
 _SUBFILE_TYPE, _SUB_DIRECTORIES, EXTRA_SAMPLES, _DNG_VERSION = 254, 330, 338, 50706
 
-#: Directories longer than this are damaged.
-_MOST_ENTRIES = 4096
-
 #: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures.
-HEIC_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx")
-AVIF_BRANDS = (b"avif", b"avis")
+HEIC_BRANDS, AVIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx"), (b"avif", b"avis")
 
-#: Suffixes of HEIC and AVIF.
+#: Suffixes of HEIC and AVIF; and how the names of photographs usually end, for a folder that is searched for them.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
-
-#: How the names of photographs usually end, for a folder that is searched for them.
 PHOTOGRAPH_SUFFIXES = (
     *(".jpg", ".jpeg", *HEIF_SUFFIXES, ".png", ".tif", ".tiff", ".webp", ".jxl", ".jp2", ".j2k", ".dpx", ".bmp"),
 )
 
-_HEAD = 12
+#: Bytes by which a format is known; directories of more entries are damaged.
+_HEAD, _MOST_ENTRIES = 12, 4096
 
 
 def file_kind(path: Path) -> str:
-    """Return the file's format, such as "JPEG".
-
-    Raise PhotoError if the file is absent, empty, or of a format that is not read, and OSError if it cannot be opened.
-    """
+    """Return the file's format, such as "JPEG"; raise PhotoError for others, and OSError if it cannot be opened."""
     if path.is_dir():
         raise PhotoError("photograph_is_folder", path=path)
     if not path.is_file():
@@ -89,11 +80,7 @@ def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
 
 
 def _is_raw(path: Path, head: bytes) -> bool:
-    """Return whether a file is camera raw, whatever its name.
-
-    A TIFF file is if it says so (DNG, Canon's CR2), or if its first picture is a reduced one and larger ones hang below
-    it, as in NEF, ARW and others.
-    """
+    """Return whether a file is camera raw, whatever its name: also TIFF that says so, or has larger pictures below."""
     if head.startswith(RAW_SIGNATURES) or (head[8:10] == b"CR" and head.startswith((b"II*\0", b"MM\0*"))):
         return True
     if not head.startswith((b"II*\0", b"MM\0*")):
@@ -104,10 +91,7 @@ def _is_raw(path: Path, head: bytes) -> bool:
 
 
 def tiff_directory(path: Path) -> dict[int, int]:
-    """Return tag -> value, or where the values stand, of a TIFF's first directory; empty if it is damaged.
-
-    Pillow's reader loads all values of a directory, each of which may claim the whole file.
-    """
+    """Return tag -> value, or its place, of a TIFF's first directory; Pillow would load values of any claimed size."""
     with path.open("rb") as file:
         head = file.read(8)
         order: Literal["little", "big"] = "little" if head.startswith(b"II") else "big"

@@ -1,4 +1,4 @@
-"""Check the header of an image file (size, depth, colors), clean its texts, and add those of other segments."""
+"""Check the header of an image file (size, depth, colors), clean its texts, add other segments; errors of decoders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,12 @@ import OpenImageIO as oiio
 from PIL import Image
 
 from crfnet_core.errors import PhotoError, one_line
-from crfnet_core.photograph.image_io import problems
+
+#: Parts of messages by which decoders refuse sound files of a coding that they do not know.
+_UNSUPPORTED = (
+    *("support is not configured", "is not implemented", "not supported", "nsupported"),
+    "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
+)
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000
@@ -23,14 +28,9 @@ RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, 
 MASK = 4
 OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
-#: The entry of a DPX header for the bytes behind each line.
-_LINE_PADDING = "dpx:EndOfLinePadding"
-
-#: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; ICC profiles fill many.
-_MOST_BYTES = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}
-
-#: The beginning of EXIF in a JPEG, which other formats may or may not have.
-_EXIF_NAME = b"Exif\0\0"
+#: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; and the beginning of EXIF in a
+#: JPEG, which other formats may or may not have.
+_MOST_BYTES, _EXIF_NAME = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}, b"Exif\0\0"
 
 #: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
 LINEAR_JXL_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
@@ -43,11 +43,7 @@ def check_size(path: Path, width: int, height: int) -> None:
 
 
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
-    """Return the bits per sample, 8, 10, 12 or 16, after checking that the header belongs to an encoded photograph.
-
-    Raise PhotoError if it is too large, a volume, camera raw, of other colors than gray and RGB, of a palette, of
-    floats, of less than 8 bits, or a lossy JPEG XL that libjxl decodes to linear light.
-    """
+    """Return the bits per sample, 8, 10, 12 or 16, of an encoded photograph; raise PhotoError for any other file."""
     check_size(path, header.width, header.height)
     if header.depth != 1:
         raise PhotoError("volume", path=path)
@@ -70,7 +66,11 @@ def check_dpx_lines(path: Path, header: Any) -> None:
         head = file.read(8)
         stored = file.seek(0, os.SEEK_END) - int.from_bytes(head[4:], "big" if head.startswith(b"SDPX") else "little")
     line = header.scanline_bytes()
-    if line % 4 and stored == (line + -line % 4) * header.height and not header.get_int_attribute(_LINE_PADDING):
+    if (
+        line % 4
+        and stored == (line + -line % 4) * header.height
+        and not header.get_int_attribute("dpx:EndOfLinePadding")
+    ):
         raise PhotoError("coding_not_read", path=path, kind="DPX", problem="padded lines that its header does not name")
 
 
@@ -93,10 +93,7 @@ def with_plain_texts(header: Any) -> Any:
 
 
 def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
-    """Return a header with what OpenImageIO reads in the EXIF, XMP and ICC profile of a JPEG of one pixel.
-
-    So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
-    """
+    """Return a header with EXIF, XMP and ICC profile, as OpenImageIO reads and names them in a JPEG with them."""
     complete = oiio.ImageSpec(header)
     if exif := info.get("exif"):
         info = {**info, "exif": _EXIF_NAME + exif.removeprefix(_EXIF_NAME)}
@@ -107,7 +104,7 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
         carrier = Path(folder, "carrier.jpg")
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
-        problems.oiio_message()
+        oiio_message()
         carried = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
         if source is not None:
             source.close()
@@ -131,3 +128,24 @@ def _check_color(path: Path, header: Any, kind: str) -> None:
     if is_ink or photometric not in READ_PHOTOMETRICS:
         colors = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
         raise PhotoError("other_colors", path=path, kind=colors)
+
+
+def damaged(path: Path, kind: str, problem: str) -> PhotoError:
+    """Return the error of a file that cannot be decoded, with the first line of the decoder's message."""
+    is_unsupported = any(words in problem for words in _UNSUPPORTED)
+    code = "coding_not_read" if is_unsupported else "damaged"
+    return PhotoError(code, path=path, kind=kind, problem=first_line(problem))
+
+
+def oiio_message(source: Any = oiio) -> str:
+    """Return OpenImageIO's last message, of an open file or else of the library, on plain lines."""
+    try:
+        problem = str(source.geterror())
+    except UnicodeDecodeError as failure:
+        problem = failure.object.decode(errors="replace")
+    return "\n".join(map(one_line, problem.split("\n")))
+
+
+def first_line(problem: str) -> str:
+    """Return the first line of a decoder's message."""
+    return problem.strip().partition("\n")[0] or "no reason is given"

@@ -13,36 +13,40 @@ from typing import Any, BinaryIO
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
 from crfnet_core.photograph.image_io.header_checks import (
     MASK,
     WHITE_IS_ZERO,
     check_dpx_lines,
     checked_bit_depth,
+    damaged,
+    oiio_message,
     with_plain_texts,
 )
-from crfnet_core.photograph.image_io.heif import read_heif
+from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
+from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
-from crfnet_core.photograph.photo import CodeValues, Photo
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
-#: Rows read at a time.
-_ROWS = 256
+#: Rows read at a time, and pages of a TIFF file that are searched for the largest.
+_ROWS, _MOST_PAGES = 256, 64
 
-#: Pages of a TIFF file that are searched for the largest.
-_MOST_PAGES = 64
+#: Formats whose second or fourth channel is alpha, of which OpenImageIO does not say so.
+LAST_ALPHA_KINDS = ("JPEG 2000", "JPEG XL")
 
-#: Formats whose alpha is straight, and of which OpenImageIO does not say so.
-STRAIGHT_KINDS = ("JPEG 2000", "JPEG XL")
+#: Formats whose pixels alone show whether alpha is associated. DPX does not state it, and OpenImageIO drops the bit of
+#: JPEG XL, whose alpha is nearly always straight.
+UNSTATED_ALPHA_KINDS = ("DPX", "JPEG XL")
 
-#: The formats that OpenImageIO's wheel does not read.
-HEIF_KINDS = ("HEIC", "AVIF")
+#: By how much colors of straight alpha are above it in some pixels, as a part of white, and the least part of these.
+ABOVE_ALPHA, LEAST_ABOVE = 0.05, 0.002
+
+#: The formats that OpenImageIO's wheel does not read, or not all of.
+PILLOW_KINDS = ("HEIC", "AVIF", "BMP")
 
 
 def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
@@ -51,8 +55,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX and BMP. The values are divided by
     the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
     Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
-    or layers the first is read, of a TIFF file the first of the largest; of an HDR photograph with a gain map (Ultra
-    HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
+    or layers the first is read, of a TIFF file the first of the largest, of JPEG XL the last; of an HDR photograph with
+    a gain map (Ultra HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
 
     Parameters
     ----------
@@ -79,33 +83,25 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
 
 def read_codes(path: str | os.PathLike[str]) -> CodeValues:
     """Return the integer samples of a file; accepts, ignores and raises as `read_photo`, which builds on it."""
-    path = Path(path)
-    with _named_errors(path):
-        kind = file_kind(path)
-        if kind in HEIF_KINDS:
-            return read_heif(path, kind)
-        with _opened(path, kind) as file:
-            return file.codes()
+    with _opened(Path(path)) as file:
+        return file if isinstance(file, CodeValues) else file.codes()
 
 
 def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
-    """Return the metadata of a file; only of HEIC and AVIF the pixels are decoded.
+    """Return the metadata of a file; only of HEIC, AVIF and BMP the pixels are decoded.
 
     Raises as `read_photo` does, but does not see damage among the pixels.
     """
-    path = Path(path)
-    with _named_errors(path):
-        kind = file_kind(path)
-        if kind in HEIF_KINDS:
-            return read_heif(path, kind).metadata
-        with _opened(path, kind) as file:
-            checked_bit_depth(path, file.header, kind)
-            return file.metadata()
+    with _opened(Path(path)) as file:
+        if isinstance(file, CodeValues):
+            return file.metadata
+        checked_bit_depth(file.path, file.header, file.kind)
+        return file.metadata()
 
 
 @dataclass(frozen=True)
 class _OpenFile:
-    """A file that OpenImageIO has opened, at the picture that is read; BMP by Pillow."""
+    """A file that OpenImageIO has opened, at the picture that is read."""
 
     path: Path
     kind: str
@@ -130,12 +126,19 @@ class _OpenFile:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
         bit_depth = checked_bit_depth(self.path, self.header, self.kind)
         values = self._decoded()
-        if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO and bit_depth > 8:
-            values = ~values  # OpenImageIO inverts such samples of 8 bits only
+        if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO:
+            wrong = np.s_[..., :1] if bit_depth > 8 else np.s_[..., 1:]  # OpenImageIO inverts all samples of 8 bits
+            values[wrong] = ~values[wrong]
         if bit_depth in (10, 12):
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
-        values = upright(values, self.turn)
-        return CodeValues.from_samples(values, bit_depth, self._upright_header(), self.metadata())
+        header = self._upright_header()
+        if self.kind in UNSTATED_ALPHA_KINDS and header.alpha_channel > 0:
+            is_straight = _is_straight(values, 2**bit_depth - 1)
+            if not is_straight and self.kind == "JPEG XL":
+                problem = "its colors may be multiplied by alpha"
+                raise PhotoError("coding_not_read", path=self.path, kind=self.kind, problem=problem)
+            header.attribute("oiio:UnassociatedAlpha", int(is_straight))
+        return CodeValues.from_samples(upright(values, self.turn), bit_depth, header, self.metadata())
 
     def _upright_header(self) -> Any:
         """Return the header of the upright picture: sides and windows are exchanged where rows become columns."""
@@ -149,23 +152,26 @@ class _OpenFile:
         return header
 
     def _decoded(self) -> NDArray[Any]:
-        """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
-        if self.kind == "BMP":
-            return np.atleast_3d(np.asarray(self.source))
+        """Return the samples as stored, shape (H, W, C); refuse damage among them."""
         values = _samples(self.source, self.header)
-        problem = problems.oiio_message(self.source)
+        problem = oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
         if values is None or problem:
-            raise problems.damaged(self.path, self.kind, problem)
+            raise damaged(self.path, self.kind, problem)
         return values
 
 
 @contextmanager
-def _named_errors(path: Path) -> Iterator[None]:
-    """Turn the system's refusals of a file, in the block, into a PhotoError."""
+def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
+    """Yield an open file, or all of it where OpenImageIO does not read it; refusals of the system are a PhotoError."""
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
-        yield
+        kind = file_kind(path)
+        if kind in PILLOW_KINDS:
+            yield read_pillow_file(path, kind)
+        else:
+            with _opened_kind(path, kind) as file:
+                yield file
     except UnicodeEncodeError as problem:
         raise PhotoError("name_not_utf8", path=ascii(str(path))) from problem
     except OSError as problem:
@@ -173,30 +179,23 @@ def _named_errors(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
+def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
-    if kind == "BMP":  # of which OpenImageIO ignores the masks of channels, and refuses sound runs (RLE)
-        try:
-            with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
-                yield _OpenFile(path, kind, image, _bmp_header(path, image), None)
-        except (OSError, SyntaxError, ValueError) as failure:
-            raise problems.damaged(path, kind, str(failure)) from None
-        return
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
-    problem = problems.oiio_message()
+    problem = oiio_message()
     if source is None:
-        raise problems.damaged(path, kind, problem)
+        raise damaged(path, kind, problem)
     try:
         if kind == "TIFF":
             _seek_picture(source)
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
-        if kind in STRAIGHT_KINDS:
-            header.attribute("oiio:UnassociatedAlpha", 1)
+        if kind in LAST_ALPHA_KINDS:
+            header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
             check_dpx_lines(path, header)
@@ -204,7 +203,7 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
             with tempfile.TemporaryDirectory() as folder:
                 base = Path(folder, "base.jpg")
                 base.write_bytes(base_image(path))
-                with _opened(base, kind) as file:
+                with _opened_kind(base, kind) as file:
                     yield replace(file, path=path, has_gain_map=True)
         else:
             yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
@@ -219,23 +218,12 @@ def _seek_picture(source: Any) -> None:
         header = source.spec()
         sizes.append(header.image_pixels() * (header.get_int_attribute("tiff:PhotometricInterpretation") != MASK))
     source.seek_subimage(sizes.index(max(sizes)) if sizes else 0, 0)
-    problems.oiio_message(source)
-
-
-def _bmp_header(path: Path, image: BmpImageFile) -> Any:
-    """Return the header of a BMP file, whose alpha is straight; refuse a palette other than of all grays."""
-    if image.mode in ("1", "P"):
-        raise PhotoError("palette", path=path, kind="a BMP file with a palette")
-    header = oiio.ImageSpec(*image.size, len(image.getbands()), oiio.UINT8)
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
-        header.attribute("oiio:BitsPerSample", 5)
-    return header
+    oiio_message(source)
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples in an open file, shape (H, W, 1 to 4), or None; of whole pictures OpenImageIO makes a copy."""
-    channels = min(header.nchannels, 4)
+    """Return the samples of an open file up to alpha, (H, W, C), or None; OpenImageIO copies a picture read at once."""
+    channels = min(header.nchannels, max(4, header.alpha_channel + 1))
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)
         return picture
@@ -247,6 +235,13 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
             return None
         values[top:bottom] = rows
     return values
+
+
+def _is_straight(samples: NDArray[Any], white: int) -> bool:
+    """Return whether colors are not multiplied by alpha, as some are above it, or all of it is opaque."""
+    samples = samples[samples[..., -1] < (1 - ABOVE_ALPHA) * white]
+    is_above = samples[..., :-1].max(axis=-1, initial=0) > samples[..., -1] + ABOVE_ALPHA * white
+    return bool(not samples.size or np.count_nonzero(is_above) > LEAST_ABOVE * len(samples))
 
 
 def _content(source: Any, path: Path) -> Any:

@@ -3,7 +3,7 @@
 file_metadata   the fields that are read: names, sizes, tables, profile
 color_tags      primaries, code points of ITU-T H.273, and names of encodings
 header_colors   the color tags in a header: ICC profile, CICP, PNG, EXIF, OpenEXR
-icc             primaries and linear curves of ICC profiles
+icc             primaries of ICC profiles, and their published curves
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name

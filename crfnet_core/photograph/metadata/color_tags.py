@@ -1,8 +1,4 @@
-"""The color tags of files: primaries, code points of ITU-T H.273 (CICP), and encodings by name.
-
-HEIC, AVIF, PNG, ICC profiles and movies hold code points. Names stand for published curves: log of cinema cameras and
-film scans, PQ and HLG.
-"""
+"""The color tags of files: primaries, code points of ITU-T H.273 (CICP), and published curves by name."""
 
 from __future__ import annotations
 
@@ -12,10 +8,9 @@ from dataclasses import dataclass, replace
 
 from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020, Chromaticity, Primaries
 
-#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
+#: CIE illuminant C, the white of a cinema projector (SMPTE RP 431-2), and the primaries of old television.
 C: Chromaticity = (0.310, 0.316)
 DCI: Chromaticity = (0.314, 0.351)
-
 _SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
 
 #: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified"; 10, CIE XYZ, is not an RGB of a camera.
@@ -42,40 +37,23 @@ DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 #: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first. PeQ is
 #: libjxl's name of PQ.
 PROFILE_TRANSFERS = (
-    (r"\bs-?log ?3", "Sony S-Log3"),
-    (r"\bs-?log ?2", "Sony S-Log2"),
-    (r"\bs-?log\b", "Sony S-Log"),
-    (r"\blog ?c ?4", "ARRI LogC4"),
-    (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"),
-    (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
-    (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
-    (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
-    (r"\bv-?log", "Panasonic V-Log"),
-    (r"log3g10", "RED Log3G10"),
-    (r"log3g12", "RED Log3G12"),
-    (r"\bd-?log\b", "DJI D-Log"),
-    (r"\bapple ?log", "Apple Log"),
-    (r"\bf-?log ?2", "Fujifilm F-Log2"),
-    (r"\bf-?log\b", "Fujifilm F-Log"),
-    (r"\bn-?log", "Nikon N-Log"),
-    (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
-    (r"\bcineon|\bprinting density", "Cineon log"),
-    (r"\blogarithmic", "log"),
-    (r"\bpe?q\b|\bst ?2084", "PQ"),
-    (r"\bhlg\b|\bhybrid log", "HLG"),
+    *((r"\bs-?log ?3", "Sony S-Log3"), (r"\bs-?log ?2", "Sony S-Log2"), (r"\bs-?log\b", "Sony S-Log")),
+    *((r"\blog ?c ?4", "ARRI LogC4"), (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"), (r"\bapple ?log", "Apple Log")),
+    *((r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"), (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2")),
+    *((r"\b(?:canon|c)-? ?log\b", "Canon Log"), (r"\bv-?log", "Panasonic V-Log"), (r"\bd-?log\b", "DJI D-Log")),
+    *((r"log3g10", "RED Log3G10"), (r"log3g12", "RED Log3G12"), (r"\bn-?log", "Nikon N-Log")),
+    *((r"\bf-?log ?2", "Fujifilm F-Log2"), (r"\bf-?log\b", "Fujifilm F-Log")),
+    *((r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"), (r"\bcineon|\bprinting density", "Cineon log")),
+    *((r"\blogarithmic", "log"), (r"\bpe?q\b|\bst ?2084", "PQ"), (r"\bhlg\b|\bhybrid log", "HLG")),
 )
 
 
 @dataclass(frozen=True)
 class ColorTags:
-    """The color tags of a file.
-
-    `transfer` is the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"; empty if there is none,
-    or an ordinary one (sRGB, BT.709), which does not show a camera's response.
-    """
+    """The color tags of a file; `transfer` is empty for sRGB and BT.709, which do not show a camera's response."""
 
     primaries: Primaries | None = None  # None without a tag, or if it cannot be expressed by primaries: see `source`
-    transfer: str = ""
+    transfer: str = ""  # the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"
     source: str = ""  # the tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none
 
 
@@ -87,14 +65,11 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
     return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
 
 
-def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
-    """Return tags with the encoding that DPX's transfer characteristic or an ICC profile's name states, if without."""
-    if color.transfer:
+def with_dpx_transfer(color: ColorTags, name: str) -> ColorTags:
+    """Return tags with the encoding that DPX's transfer characteristic names, if without."""
+    if color.transfer or name not in DPX_TRANSFERS:
         return color
-    if dpx in DPX_TRANSFERS:
-        return replace(color, transfer=DPX_TRANSFERS[dpx], source=color.source or f'dpx:Transfer "{dpx}"')
-    name = profile_transfer(profile)
-    return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
+    return replace(color, transfer=DPX_TRANSFERS[name], source=color.source or f'dpx:Transfer "{name}"')
 
 
 def profile_transfer(profile: str) -> str:

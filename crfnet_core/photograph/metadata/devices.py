@@ -1,8 +1,7 @@
 """Recognize phones, compacts and cameras with interchangeable lenses by the maker and the model in EXIF.
 
-Makers of one kind are known by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
-make several kinds: there the first pattern that fits the model decides, and the last one often fits everything.
-Drones, action cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
+Makers of one kind are known by name; of the others the first pattern that fits the model decides. Drones, action
+cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
 """
 
 from __future__ import annotations
@@ -109,10 +108,7 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device by EXIF Make and Model; UNKNOWN where neither shows it.
-
-    Where the make is absent, the model may begin with it ("NIKON D90").
-    """
+    """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN."""
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker
@@ -120,9 +116,8 @@ def device_of(make: str, model: str) -> Device:
         if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
             return device
     name = next((name for name in PATTERNS if maker.startswith(name)), "")
-    plain = re.sub(
-        rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*", "", model.casefold().strip()
-    )  # without the maker in front
+    front = rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*"  # the maker
+    plain = re.sub(front, "", model.casefold().strip())
     return next((device for pattern, device in PATTERNS.get(name, ()) if re.match(pattern, plain)), _UNKNOWN)
 
 

@@ -34,12 +34,9 @@ EDITORS = (
     *("camera360", "facetune", "afterlight", "prisma", "canva", "retrica", "faceapp", "remini", "touchretouch"),
 )
 
-#: Programs that only turn, label or wrap photographs, though their names look like names of editors. The pictures in
-#: the files of DNG Converter have the tones of the camera.
-NO_EDITORS = ("windows photo viewer", "adobe bridge", "dng converter")
-
-#: `Software`, in full, after a change in Google Photos or Picasa Web.
-EXACT = ("google", "google photos")
+#: Programs that only turn, label or wrap photographs, though their names look like names of editors; and `Software`, in
+#: full, after a change in Google Photos or Picasa Web.
+NO_EDITORS, EXACT = ("windows photo viewer", "adobe bridge", "dng converter"), ("google", "google photos")
 
 
 def _any_of(names: Sequence[str]) -> re.Pattern[str]:
@@ -51,10 +48,7 @@ _EDITOR, _DEVELOPER = _any_of(EDITORS), _any_of(DEVELOPERS)
 
 
 def editor_name(software: str, history: Sequence[str] = ()) -> str:
-    """Return the program that edited or developed the photograph, as it writes itself, or an empty text.
-
-    It is EXIF Software, in many files the camera's firmware, or else the last editor in the XMP history.
-    """
+    """Return the editor that EXIF Software names, else the last one in the XMP history, or an empty text."""
     return next((name for name in (software, *reversed(history)) if is_editor(name)), "")
 
 

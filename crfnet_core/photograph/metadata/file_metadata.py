@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.metadata.color_tags import ColorTags, with_named_transfer
+from crfnet_core.photograph.metadata.color_tags import ColorTags, with_dpx_transfer
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
 
 #: A quantization table: 64 divisors, row by row.
@@ -15,17 +15,13 @@ Table = tuple[int, ...]
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
 
-#: Entry of a header that a renderer writes -> the renderer. Blender writes it into the PNG and the JPEG files of a
-#: render, unless the scene's metadata says otherwise.
+#: Entry of the header of a PNG or JPEG file that a renderer writes, unless its settings say otherwise -> the renderer.
 RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
 
 @dataclass(frozen=True)
 class FileMetadata:
-    """The metadata of an image file; a field is empty or None where the file does not state it.
-
-    Texts hold printable characters only, and no spaces at their ends.
-    """
+    """The metadata of an image file; a field is empty or None where the file does not state it. Texts are printable."""
 
     width: int = 0  # of the upright picture, in pixels
     height: int = 0
@@ -58,7 +54,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
-    names = _text(header, "dpx:Transfer"), _text(header, "ICCProfile:profile_description")
+    color = header_color_tags(header, file_format, jpeg.interop_index)
     return replace(
         jpeg,
         width=header.width,
@@ -72,7 +68,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         file_format=file_format,
-        color=with_named_transfer(header_color_tags(header, file_format, jpeg.interop_index), *names),
+        color=with_dpx_transfer(color, _text(header, "dpx:Transfer")),
     )
 
 

@@ -21,18 +21,15 @@ DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
 
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
-SAME_CHROMATICITIES = 2e-4
-
-#: Least area of the triangle of primaries in x and y, doubled; Rec.709 has 0.22.
-LEAST_AREA = 0.01
+#: Least area of the triangle of primaries in x and y, doubled: Rec.709 has 0.22. How far from 1 a linear gamma may be.
+SAME_CHROMATICITIES, LEAST_AREA, LINEAR_GAMMA = 2e-4, 0.01, 0.04
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
     """Return the color tags of an open file; the first source that has any is believed.
 
-    The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
-    Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
-    gives no primaries, and no other source does then. OpenImageIO does not read the InteroperabilityIndex of EXIF.
+    The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3). If it works by tables,
+    no other source gives primaries. OpenImageIO does not read the InteroperabilityIndex of EXIF.
     """
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))
@@ -54,10 +51,12 @@ def header_attribute(header: Any, name: str) -> Any:
 
 def _png_tags(header: Any) -> tuple[ColorTags, ...]:
     """Return the tags of PNG's other chunks: a gamma of 1 is linear."""
-    is_srgb, is_linear = header_attribute(header, "png:sRGB") is not None, header_attribute(header, "png:gamma") == 1
+    gamma = header_attribute(header, "png:gamma")
+    is_linear = isinstance(gamma, float) and abs(gamma - 1) < LINEAR_GAMMA
+    is_srgb = header_attribute(header, "png:sRGB") is not None
     srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
-    gamma = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
-    return srgb, _chromaticity_tags(header, "cHRM chunk"), gamma
+    linear = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
+    return srgb, _chromaticity_tags(header, "cHRM chunk"), linear
 
 
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:

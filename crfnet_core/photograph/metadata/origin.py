@@ -12,35 +12,27 @@ from crfnet_core.photograph.metadata.editors import editor_name, is_developer
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ijg_quality
 
-#: The editor of a file that has a segment of Adobe, or names a raw file, but does not name a program.
+#: The editor of a file that has a segment of Adobe, or names a raw file, but does not name a program; and ends, in
+#: lower case, of the names of files that are not raw.
 ADOBE = "a program of Adobe"
-
-#: Ends, in lower case, of the names of files that are not raw.
 ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".heif", ".webp", ".avif", ".jxl")
 
 #: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
-#: 18:9 to 20:9 are the screens of phones.
+#: 18:9 to 20:9 are the screens of phones. And how far from the ratio in EXIF: scaled sides are rounded.
 SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "2:1": (2.1, 0.07)}
-
-#: A picture and the size in EXIF have one shape if their ratios differ by less than this: scaled sides are rounded.
 SAME_SHAPE = 0.02
 
 #: Longest side in pixels below which a picture counts as scaled, unless EXIF has the same size and both sides are whole
 #: blocks: the smallest size of cameras of the last fifteen years has 1600 pixels, the sizes of web pages end at 1280.
-SCALED_BELOW = 1600
-
-#: Longest sides in pixels to which messengers and photograph sites scale.
-WEB_SIDES = (1600, 1920, 2048)
+#: And the longest sides to which messengers and photograph sites scale.
+SCALED_BELOW, WEB_SIDES = 1600, (1600, 1920, 2048)
 
 #: The longer and the shorter side of a camera's picture are multiples of these; since 2004 it has this many pixels.
 NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 
-#: From this quality on the tables of the IJG library are nearly all ones, as in many cameras.
-INDISTINCT_QUALITY = 98
-
-#: Highest JPEG quality of the copies that messengers and web sites send, as far as they can be distinguished: pages of
-#: photographers have 90 and more.
-SENT_QUALITY = 85
+#: From the first quality on the tables of the IJG library are nearly all ones, as in many cameras. Messengers and web
+#: sites send copies of at most the second; pages of photographers have 90 and more.
+INDISTINCT_QUALITY, SENT_QUALITY = 98, 85
 
 
 class Encoding(StrEnum):
@@ -123,11 +115,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return `origin` with the device that the user states; it overrides the file's.
-
-    UNKNOWN stands for a camera of another or an unknown kind. A rendering stays one. Raise ValueError if it is not a
-    device.
-    """
+    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one."""
     if origin.renderer:
         return origin
     device = Device(device)
@@ -145,10 +133,7 @@ def picture_shape(width: int, height: int) -> str:
 
 
 def _is_developed(metadata: FileMetadata, editor: str) -> bool:
-    """Return whether a program developed the photograph from a raw file; Adobe's also name files that are not raw.
-
-    DNG Converter names the raw file, too, but keeps the camera's own picture of it.
-    """
+    """Return whether a program developed the photograph from a raw file; DNG Converter keeps the camera's picture."""
     programs = " ".join((metadata.software, *metadata.history)).casefold()
     if metadata.raw_file and "dng converter" not in programs:
         return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
@@ -156,11 +141,7 @@ def _is_developed(metadata: FileMetadata, editor: str) -> bool:
 
 
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
-    """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not show it.
-
-    Cameras begin the file with EXIF, as its standard asks, and most have tables of their own. Libraries begin it with
-    JFIF, and most use the IJG library's tables. Phones may do both.
-    """
+    """Return whether a program encoded a JPEG file, by its segments and tables; None if they do not show it."""
     if metadata.file_format != "JPEG" or not metadata.luma_table:
         return None
     is_ijg = quality is not None and quality < INDISTINCT_QUALITY
@@ -172,10 +153,7 @@ def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | N
 
 
 def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
-    """Return whether the picture was scaled: by the size in EXIF, then by sizes that cameras, or web pages, have.
-
-    A picture that is smaller than EXIF says, and of another shape, was cut: then nothing is known of its scale.
-    """
+    """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
     size = sorted((metadata.width, metadata.height))
     exif_size = sorted(metadata.exif_size or ())
     if size[0] <= 0:

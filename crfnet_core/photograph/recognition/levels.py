@@ -17,24 +17,17 @@ BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 #: Luma of red, green and blue, as JPEG and most video encoders compute it (ITU-R BT.601).
 LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 
-#: Bins of the histograms: the codes of 10 bits.
-BINS = 1024
-
-#: Rows and columns are skipped until at most so many samples remain; nothing is averaged.
-MOST_SAMPLES = 3_000_000
-
-#: Rows of samples counted at a time.
-ROWS = 64
+#: Bins of the histograms: the codes of 10 bits. Rows and columns are skipped until at most so many samples remain;
+#: nothing is averaged. Rows of samples counted at a time.
+BINS, MOST_SAMPLES, ROWS = 1024, 3_000_000, 64
 
 #: Range of luma below which a picture is flat: 16 codes of 255, as black frames, gray cards without noise, and files of
 #: 16 bits whose codes end where 12 bits do have it.
 FLAT_RANGE = 16.5 / 255
 
-#: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness.
-LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255
-
-#: How far around them samples count as black or white: three codes.
-MARGIN = 3 / 255
+#: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness, and how far around them
+#: samples count as black or white.
+LIMITED_BLACK, LIMITED_WHITE, MARGIN = 16 / 255, 235 / 255, 3 / 255
 
 #: The largest fraction of samples outside, and the least fraction at either end.
 MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
@@ -101,12 +94,7 @@ class Levels:
 
 
 def is_limited_range(levels: Levels) -> bool:
-    """Return whether a picture has the histogram of limited range: Eq. L.2 of docs/METHOD.md.
-
-    Either hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile
-    up, as clipped highlights and shadows do; or black and white of luma lie where limited range has them. Of 92 real
-    photographs 12 have such a black and 3 such a white, none both.
-    """
+    """Return whether a picture has the histogram of limited range: Eq. L.2; of 92 real photographs none has."""
     return _has_piles(levels) or _has_ends(levels)
 
 
@@ -118,7 +106,7 @@ def _has_ends(levels: Levels) -> bool:
 
 
 def _has_piles(levels: Levels) -> bool:
-    """Return whether the samples end at the codes 16 and 235, and pile up at one of them."""
+    """Return whether hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one."""
     below, above = levels.fraction(0, LIMITED_BLACK - _BAND / 2), levels.fraction(LIMITED_WHITE + _BAND / 2, 1)
     dark, bright = (levels.fraction(end - MARGIN, end + MARGIN) for end in (LIMITED_BLACK, LIMITED_WHITE))
     inside_dark = levels.fraction(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)

@@ -30,11 +30,8 @@ DARKEST_REFLECTANCE, DARKEST_STOPS = 0.003, 1.4
 #: How far below a curve's black noise may take the darkest samples, and the deviation of samples lower yet.
 NOISE, NOISE_DEVIATION = 0.004, 0.003
 
-#: Curves that are named.
-MOST_NAMED = 4
-
-#: The fraction of the samples below the codes over which the light of two curves is compared.
-DARK = 0.01
+#: Curves that are named; the fraction of the samples below the codes over which the light of two curves is compared.
+MOST_NAMED, DARK = 4, 0.01
 
 
 @dataclass(frozen=True)
@@ -47,11 +44,7 @@ class NearCurve:
 
 
 def log_factor(levels: Levels) -> float:
-    """Return the likelihood ratio of the levels under log footage and under ordinary photographs: Eq. L.3.
-
-    It is 1 if black is not lifted, which proves nothing: log footage whose legal range was stretched when it was
-    decoded has a low black too. It is also 1 if black lies too high, or the picture spans too little of the range.
-    """
+    """Return the likelihood ratio of the levels under log footage and ordinary photographs: Eq. L.3; 1 if undecided."""
     is_lifted = LIFTED_BLACK <= levels.black <= HIGHEST_BLACK
     if not is_lifted or levels.white - levels.black < LEAST_SPAN:
         return 1.0
@@ -59,11 +52,7 @@ def log_factor(levels: Levels) -> float:
 
 
 def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCurve, ...]:
-    """Return up to four published curves that explain the levels best, the likeliest first: Eq. L.4.
-
-    Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
-    count as equally frequent. Of makers that the files name (`makes`), where some are known, only the curves are tried.
-    """
+    """Return up to four published curves, of `makes` if known, that explain black and the middle best: Eq. L.4."""
     makers = " ".join(makes).casefold()
     tried = {name: curve for name, curve in LOG_CURVES.items() if name.split()[0].casefold() in makers} or LOG_CURVES
     scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])

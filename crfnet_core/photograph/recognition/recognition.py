@@ -1,8 +1,4 @@
-"""Detect inputs that are not camera photographs, and advise what to use instead.
-
-They are log footage, limited range, renderings, recompressed copies and flat frames. Encodings with a published curve,
-which the file names, are refused: there is nothing to estimate.
-"""
+"""Detect inputs that are not camera photographs, and advise what to use instead; refuse published curves by name."""
 
 from __future__ import annotations
 
@@ -68,8 +64,7 @@ def recognize(
 ) -> Recognition | None:
     """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
-    `levels` are of all pictures together; `log_probability` is of log footage and counts the levels by `log_factor`;
-    `is_noise`: whether none shows a scene; `makes` are the makers that the files name.
+    `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
     if levels.is_flat or is_noise:
         reason = Notice("flat_frame" if levels.is_flat else "noise_frame")

@@ -1,22 +1,10 @@
 """The whole command line of `crfnet`; `parts` has the options that subcommands share."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path
 
-from .parts import (
-    Commands,
-    Parser,
-    add_action,
-    add_command,
-    add_frames,
-    add_json,
-    add_network,
-    add_plate,
-    written_path,
-)
+from .parts import Commands, Parser, add_action, add_command, add_frames, add_json, add_network, add_plate, written_path
 
 ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look

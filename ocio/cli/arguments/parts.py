@@ -1,7 +1,5 @@
 """Options that several subcommands of `crfnet` have, and the types of their values."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import NamedTuple, NoReturn, TypeAlias

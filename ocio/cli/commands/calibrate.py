@@ -1,7 +1,5 @@
 """`crfnet calibrate`: the response of a camera, measured from an exposure stack, or from raw files and their JPEGs."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
@@ -18,15 +16,7 @@ def run(arguments: argparse.Namespace) -> None:
     outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
-    seconds = parse_times(arguments.times) if arguments.times else None
-    with progress_bar("frames") as progress:
-        calibration: report.Measured
-        if pipeline.is_pairs(frames):
-            calibration = calibrate_pairs(frames, accept_edited=arguments.accept_edited, progress=progress)
-        else:
-            calibration = calibrate_stack(
-                frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress
-            )
+    calibration = _measured(arguments)
     comparison = calibration.compare(other) if other else None
     document = pipeline.write_calibration(plan, calibration, comparison)
     lines = [
@@ -38,3 +28,13 @@ def run(arguments: argparse.Namespace) -> None:
         *lost_lines(plan),
     ]
     print_result(document | lost_document(plan), lines, as_json=arguments.json)
+
+
+def _measured(arguments: argparse.Namespace) -> report.Measured:
+    """Return the response of a stack, or of raw files and their JPEGs."""
+    seconds = parse_times(arguments.times) if arguments.times else None
+    with progress_bar("frames") as progress:
+        options = {"accept_edited": arguments.accept_edited, "progress": progress}
+        if pipeline.is_pairs(arguments.photos):
+            return calibrate_pairs(arguments.photos, **options)
+        return calibrate_stack(arguments.photos, seconds=seconds, **options)

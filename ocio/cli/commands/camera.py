@@ -1,7 +1,5 @@
 """`crfnet camera`: measured responses of cameras, kept to be used again."""
 
-from __future__ import annotations
-
 import argparse
 
 from crfnet_core.errors import CameraError

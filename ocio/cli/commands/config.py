@@ -1,7 +1,5 @@
 """`crfnet config`: plates in a config that is built on another one."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterable
 from dataclasses import asdict

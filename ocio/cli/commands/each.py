@@ -1,7 +1,5 @@
 """The options that `crfnet estimate` and `crfnet linearize` share, and `--each`: many photographs."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterable
 from dataclasses import asdict

@@ -1,7 +1,5 @@
 """`crfnet estimate`: one response of all photographs, or one of each."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """`crfnet info`: the contents of a LUT file."""
 
-from __future__ import annotations
-
 import argparse
 
 from ... import report

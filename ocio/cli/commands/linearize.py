@@ -1,7 +1,5 @@
 """`crfnet linearize`: plates as linear EXR, through a LUT or an estimated response."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -48,10 +48,11 @@ def stored(name: str) -> dict[str, Any] | None:
 
 
 def state() -> dict[str, Any]:
-    """Return what a run could change: images with their color spaces and estimates, groups, nodes and links."""
+    """Return what a run could change: images with their color spaces and estimates, groups, nodes, links, the film."""
     trees = [*bpy.data.node_groups, *(s.node_tree for s in bpy.data.scenes if getattr(s, "node_tree", None))]
     return {
         "images": {i.name: [i.colorspace_settings.name, i.source, KEY in i] for i in bpy.data.images},
+        "film": bpy.context.scene.render.film_transparent,
         "groups": sorted(group.name for group in bpy.data.node_groups),
         "nodes": sorted(f"{tree.name}/{node.name}" for tree in trees for node in tree.nodes),
         "links": sorted(f"{link.from_node.name} > {link.to_node.name}" for tree in trees for link in tree.links),

@@ -36,7 +36,7 @@ def test_a_photograph_keeps_its_windows_and_gets_the_camera_s_response(estimate)
     answer = with_camera(estimate, camera("a", make="SONY", model="ILCE-7M3"))
     assert answer.curve == ResponseCurve.gamma(2.2)
     assert (answer.windows, answer.photos, answer.origins) == (estimate.windows, estimate.photos, estimate.origins)
-    assert (answer.verdict, answer.warnings, answer.camera.name) == (Verdict.GOOD, (), "a")
+    assert (answer.verdict, answer.warnings, answer.camera.name) == (Verdict.USABLE, (), "a")
     assert ResponseEstimate.from_dict(answer.to_dict()) == answer
 
 

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PHOTOGRAPHIC, PROPHOTO, REC709, REC2020
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
@@ -64,11 +65,18 @@ def test_chunks_are_believed_by_their_order(tmp_path):
 
 def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
     path, linear = tmp_path / "a.png", struct.pack(">I", 100_000)
-    assert tags(path, gAMA=linear) == ColorTags(None, "linear", "gAMA chunk")
+    for gamma in (linear, struct.pack(">I", 99_000)):
+        assert tags(path, gAMA=gamma) == ColorTags(None, "linear", "gAMA chunk")
     assert tags(path, gAMA=linear, cHRM=chrm(REC2020)) == ColorTags(REC2020, "linear", "cHRM chunk")
     assert tags(path, gAMA=linear, sRGB=b"\0") == ColorTags(REC709, "", "sRGB chunk")
     assert tags(path, gAMA=linear, cICP=bytes([9, 13, 0, 1])) == ColorTags(REC2020, "", "CICP")
     assert tags(path, gAMA=struct.pack(">I", 45_455)) == ColorTags()
+
+
+def test_limited_range_is_refused(tmp_path):
+    with pytest.raises(PhotoError) as caught:
+        tags(tmp_path / "a.png", cICP=bytes([1, 1, 0, 0]))
+    assert caught.value.code == "coding_not_read"
 
 
 @pytest.mark.parametrize("chunks", [{}, {"cHRM": bytes(32)}, {"cHRM": bytes(31)}, {"cICP": bytes(3)}, {"sRGB": b""}])

@@ -3,7 +3,8 @@ import json
 import pytest
 
 from crfnet_core.errors import PriorError
-from crfnet_core.posterior import DEFAULT_PRIOR, Family, Prior, packaged_priors
+from crfnet_core.posterior import Family, Prior
+from crfnet_core.posterior.prior import DEFAULT_PRIOR, packaged_priors
 
 
 def written(folder, entries):

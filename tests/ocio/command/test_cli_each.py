@@ -225,7 +225,9 @@ def test_a_dask_worker_that_dies_loses_nothing(photographs, fixed_model, tmp_pat
     assert [record["error"] for record in records_in(tmp_path / "out")] == [""] * 6
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:{silent}", "tls://127.0.0.1:{silent}", "bogus://x", "x y"])
+@pytest.mark.parametrize(
+    "address", ["tcp://127.0.0.1:{silent}", "tls://127.0.0.1:{silent}", "ws://127.0.0.1:{silent}", "ucx://x", "x y"]
+)
 def test_no_scheduler_is_one_line(estimate, photographs, monkeypatch, address):
     """Also of a server that takes the connection and says nothing."""
     pytest.importorskip("distributed", reason="Dask is not installed: pip install 'crfnet[cluster]'")

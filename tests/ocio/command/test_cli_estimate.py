@@ -13,13 +13,7 @@ from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 
-FILES = {
-    *(f"plate{suffix}" for suffix in WRITERS),
-    "config.ocio",
-    "plate_linear.exr",
-    "plate_sheet.png",
-    "plate.json",
-}
+FILES = {*(f"plate{suffix}" for suffix in WRITERS), "config.ocio", "plate_linear.exr", "plate_sheet.png", "plate.json"}
 
 
 def test_writes_what_it_says(look):

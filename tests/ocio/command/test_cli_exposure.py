@@ -56,13 +56,7 @@ class TestExposure:
 
     @pytest.mark.parametrize(
         ("word", "words"),
-        [
-            ("gray=0", "a gray of 0"),
-            ("gray=118", "a gray of 118"),
-            ("gray=", ""),
-            ("bright", ""),
-            ("nan", "nan is"),
-        ],
+        [("gray=0", "a gray of 0"), ("gray=118", "a gray of 118"), ("gray=", ""), ("bright", ""), ("nan", "nan is")],
     )
     def test_other_words_are_refused(self, crfnet, plate, tmp_path, word, words):
         done = crfnet("estimate", plate, "--out", tmp_path / "out", "--exposure", word)

@@ -167,16 +167,19 @@ def test_the_slope_beyond_a_clipped_end_is_bounded():
     np.testing.assert_allclose(lut.apply([-0.125, 1.125]), [-1, 2], atol=1e-6)
 
 
-@pytest.mark.parametrize("domain", [(0.1, 1), (0, 0.9), (-np.inf, 1), (0, np.inf), (np.nan, 1)])
-def test_domains_that_do_not_hold_the_response_are_refused(domain):
-    with refused(LutError, "lut_domain_short"):
-        inverse_response_lut(ResponseCurve.gamma(), domain=domain)
-
-
-@pytest.mark.parametrize("length", [-1, 0, 1, 65537])
-def test_lengths_out_of_range_are_refused(length):
-    with refused(LutError, "lut_length", length=length):
-        inverse_response_lut(ResponseCurve.gamma(), length=length)
+@pytest.mark.parametrize(
+    ("code", "choice"),
+    [
+        *(
+            ("lut_domain_short", {"domain": ends})
+            for ends in ((0.1, 1), (0, 0.9), (-np.inf, 1), (0, np.inf), (np.nan, 1))
+        ),
+        *(("lut_length", {"length": length}) for length in (-1, 0, 1, 65537)),
+    ],
+)
+def test_domains_that_do_not_hold_the_response_and_lengths_out_of_range_are_refused(code, choice):
+    with refused(LutError, code):
+        inverse_response_lut(ResponseCurve.gamma(), **choice)
 
 
 @settings(max_examples=100, deadline=None)

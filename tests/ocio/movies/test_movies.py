@@ -9,7 +9,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
-from crfnet.movies.stream import _key_numbers, check_progressive, read_stream
+from crfnet.movies.stream import check_progressive, read_stream
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, write_movie
 
@@ -89,20 +89,6 @@ def test_key_frames_are_decoded_alone(tmp_path, name):
     assert {number for number, _ in frames.photos(keys)} == set(keys)
 
 
-@pytest.mark.parametrize(
-    ("packets", "keys"),
-    [
-        ([], ()),
-        ([(None, False)] * 3, ()),
-        ([(0, True), (2, False), (1, False), (3, True), (4, False)], (1, 4)),
-        ([(2, True), (0, False), (1, False), (5, True), (3, False)], (3, 5)),  # an open group
-        ([(0, True), (1, False), (0, True), (1, False)], (1, 3)),  # two clocks
-    ],
-)
-def test_numbers_of_key_frames(packets, keys):
-    assert _key_numbers(packets) == keys
-
-
 def test_frames_are_chosen_and_missing_ones_named(movie):
     frames = MovieFrames.find(movie, "20-30x5,9")
     assert (frames.numbers, frames.missing) == ((9, 20), (25, 30))
@@ -111,27 +97,73 @@ def test_frames_are_chosen_and_missing_ones_named(movie):
     assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
 
 
-def test_a_damaged_frame_fails_and_the_others_keep_their_numbers(tmp_path):
-    path = write_movie(tmp_path / "a.mov", 12, codec="prores_ks", form="yuv422p10le")
-    content = bytearray(path.read_bytes())
-    place = content.index(b"icpf", len(content) // 2) + 4
-    content[place : place + 60] = bytes(60)
-    path.write_bytes(content)
-    numbers = bars(MovieFrames.find(path))
-    assert numbers.count(None) == 1
-    assert all(shown in (None, number) for number, shown in enumerate(numbers, 1))
-
-
-def test_what_follows_damage_up_to_the_next_key_frame_fails(tmp_path):
-    """The decoder predicts it from a damaged frame and does not complain."""
-    path = write_movie(tmp_path / "a.mp4", 24, options={"g": "8", "bf": "0", "sc_threshold": "0"})
+def damage(path, number, start=0.0, end=1.0):
+    """Write zeros over a part of a movie's packet, counted from 1 in the order of the file."""
     with av.open(str(path)) as container:
-        packets = [packet for packet in container.demux(video=0) if packet.size]
-        place, size = packets[10].pos, packets[10].size
+        packet = [packet for packet in container.demux(video=0) if packet.size][number - 1]
     content = bytearray(path.read_bytes())
-    content[place : place + size] = bytes(size)
+    begin, end = (packet.pos + int(packet.size * part) for part in (start, end))
+    content[begin:end] = bytes(end - begin)
     path.write_bytes(content)
-    assert bars(MovieFrames.find(path)) == [*range(1, 11), *[None] * 6, *range(17, 25)]
+    return path
+
+
+#: Frames predicted from the one before, and a key frame every 8.
+ROWS = {"options": {"g": "8", "bf": "0", "sc_threshold": "0"}}
+HEVC_ROWS = {"codec": "libx265", "options": {"x265-params": "log-level=error:keyint=8:min-keyint=8:bframes=0:crf=10"}}
+
+
+@pytest.mark.parametrize(
+    ("name", "part", "options", "last"),
+    [
+        ("a.mov", (0, 0.2), {"codec": "prores_ks", "form": "yuv422p10le"}, 11),
+        ("a.mkv", (0.4, 0.5), {"codec": "ffv1", "options": {"level": "3", "slicecrc": "1"}}, 12),
+        ("a.mp4", (0, 1), ROWS, 16),
+        ("a.mp4", (0.5, 0.6), ROWS, 16),
+        ("a.ts", (0.5, 0.9), ROWS, 16),
+        ("a.mp4", (0.3, 0.9), HEVC_ROWS, 16),
+        ("a.avi", (0.01, 1), {"codec": "ffv1", "options": {"level": "3", "slicecrc": "1", "g": "1"}}, 11),
+    ],
+)
+def test_damage_fails_up_to_the_next_key_frame_and_the_others_keep_their_numbers(tmp_path, name, part, options, last):
+    """Decoders conceal it, predict from a damaged frame, or pass over it, and hardly complain."""
+    path = damage(write_movie(tmp_path / name, 24, **options), 11, *part)
+    lost = [*range(11, last + 1)]
+    assert bars(MovieFrames.find(path)) == [None if number in lost else number for number in range(1, 25)]
+
+
+def test_a_damaged_first_frame_counts(tmp_path):
+    path = damage(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le"), 1)
+    assert bars(MovieFrames.find(path)) == [None, 2, 3, 4, 5, 6]
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("a.mkv", {"codec": "ffv1"}),
+        ("a.avi", {"codec": "ffvhuff", "form": "rgb24"}),
+        ("a.mov", {"codec": "qtrle", "form": "rgb24", "muxer": {"movflags": "faststart"}}),
+    ],
+)
+def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, name, options):
+    path = write_movie(tmp_path / name, 24, **options)
+    assert "cut short" not in str(read_stream(path))
+    path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+    frames = MovieFrames.find(path)
+    shown = bars(frames)
+    assert "the file is cut short" in str(frames.movie)
+    assert shown[:10] == [*range(1, 11)]
+    assert shown[-1] is None
+
+
+def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
+    path = write_movie(tmp_path / "a.mkv", codec="ffv1")
+    content = bytearray(path.read_bytes())
+    with av.open(str(path)) as container:
+        place = [packet.pos for packet in container.demux(video=0) if packet.size][3]
+    content[place - 20 : place + 20] = bytes(40)
+    path.write_bytes(content)
+    assert refusal(path) == "movie_undecodable"
 
 
 CHANGES = {
@@ -194,7 +226,9 @@ def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path):
 
 def test_alpha_is_kept(tmp_path):
     path = write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuva444p10le", options={"profile": "4444"})
-    np.testing.assert_allclose(next(MovieFrames.find(path).loaders([0]))().alpha, 1, atol=0.01)
+    frames = MovieFrames.find(path)
+    np.testing.assert_allclose(next(frames.loaders([0]))().alpha, 1, atol=0.01)
+    assert "does not say how its alpha is meant" in str(frames.movie)
 
 
 def test_what_is_not_a_movie(tmp_path):

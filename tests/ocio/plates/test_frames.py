@@ -24,16 +24,11 @@ def names(sequence):
 @pytest.mark.parametrize(
     ("pattern", "number", "name"),
     [
-        ("plate.%04d.png", 7, "plate.0007.png"),
-        ("plate.%d.png", 7, "plate.7.png"),
-        ("plate.%04d.png", -3, "plate.-003.png"),
-        ("plate.#.exr", 12345, "plate.12345.exr"),
-        ("plate_@@@@@.exr", 7, "plate_00007.exr"),
-        ("a@2x.%03d.png", 1, "a@2x.001.png"),
-        ("shot.$F4.png", 7, "shot.0007.png"),
-        ("shot.$F.png", 7, "shot.7.png"),
-        ("shot_v2-%04d.png", 7, "shot_v2-0007.png"),
-        ("take1-2####.png", 7, "take1-20007.png"),
+        *(("plate.%04d.png", 7, "plate.0007.png"), ("plate.%d.png", 7, "plate.7.png")),
+        *(("plate.%04d.png", -3, "plate.-003.png"), ("plate.#.exr", 12345, "plate.12345.exr")),
+        *(("plate_@@@@@.exr", 7, "plate_00007.exr"), ("a@2x.%03d.png", 1, "a@2x.001.png")),
+        *(("shot.$F4.png", 7, "shot.0007.png"), ("shot.$F.png", 7, "shot.7.png")),
+        *(("shot_v2-%04d.png", 7, "shot_v2-0007.png"), ("take1-2####.png", 7, "take1-20007.png")),
         ("a$b.[1-3].####.png", 7, "a$b.[1-3].0007.png"),
     ],
 )
@@ -89,8 +84,7 @@ def test_only_the_chosen_frames_are_found(tmp_path):
 @pytest.mark.parametrize(
     ("files", "numbers"),
     [
-        (["p.0009.png", "p.0010.png", "p.0012.png"], (9, 10, 12)),
-        (["0001.jpg", "0002.jpg"], (1, 2)),
+        *((["p.0009.png", "p.0010.png", "p.0012.png"], (9, 10, 12)), (["0001.jpg", "0002.jpg"], (1, 2))),
         (["p.98.png", "p.99.png", "p.100.png"], (98, 99, 100)),
         (["p.-002.png", "p.-001.png", "p.0000.png"], (-2, -1, 0)),
         (["shot-0001.png", "shot-0002.png"], (1, 2)),
@@ -120,16 +114,9 @@ def test_the_add_on_needs_no_fileseq(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("frames", "numbers"),
     [
-        ("1001-1003", (1001, 1002, 1003)),
-        ("1-10x3", (1, 4, 7, 10)),
-        ("1,5,9", (1, 5, 9)),
-        ("3,1-4", (1, 2, 3, 4)),
-        ("007", (7,)),
-        ("-3--1", (-3, -2, -1)),
-        ("5-1", (1, 2, 3, 4, 5)),
-        ("1-6y3", (2, 3, 5, 6)),
-        ((3, 1, 3), (1, 3)),
-        (np.array([4, 2]), (2, 4)),
+        *(("1001-1003", (1001, 1002, 1003)), ("1-10x3", (1, 4, 7, 10)), ("1,5,9", (1, 5, 9)), ("007", (7,))),
+        *(("3,1-4", (1, 2, 3, 4)), ("-3--1", (-3, -2, -1)), ("5-1", (1, 2, 3, 4, 5)), ("1-6y3", (2, 3, 5, 6))),
+        *(((3, 1, 3), (1, 3)), (np.array([4, 2]), (2, 4))),
     ],
 )
 def test_a_specification_stands_for_ascending_numbers(frames, numbers):
@@ -158,14 +145,10 @@ def test_frames_that_are_too_far_apart_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("name", "frames", "code"),
     [
-        ("q.png", None, "no_such_plate"),
-        ("empty", None, "folder_without_sequence"),
-        ("p.0001.png", "1-3", "single_file"),
-        ("q.%04d.png", None, "no_such_frames"),
-        ("p.%04d.png", "7-9", "no_such_frames"),
+        *((name, None, "no_such_plate") for name in ("q.png", "x" * 300 + ".png", "p.*.png")),
+        *(("empty", None, "folder_without_sequence"), ("p.0001.png", "1-3", "single_file")),
+        *(("q.%04d.png", None, "no_such_frames"), ("p.%04d.png", "7-9", "no_such_frames")),
         ("absent/p.%04d.png", None, "cannot_list"),
-        ("x" * 300 + ".png", None, "no_such_plate"),
-        ("p.*.png", None, "no_such_plate"),
     ],
 )
 def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
@@ -180,11 +163,7 @@ def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
     ("total", "count", "positions"),
     [
         (100, 8, [0, 14, 28, 42, 57, 71, 85, 99]),
-        (8, 8, [0, 1, 2, 3, 4, 5, 6, 7]),
-        (5, 8, [0, 1, 2, 3, 4]),
-        (9, 3, [0, 4, 8]),
-        (9, 1, [0]),
-        (1, 8, [0]),
+        *((8, 8, [0, 1, 2, 3, 4, 5, 6, 7]), (5, 8, [0, 1, 2, 3, 4]), (9, 3, [0, 4, 8]), (9, 1, [0]), (1, 8, [0])),
     ],
 )
 def test_samples_are_evenly_spread(tmp_path, total, count, positions):
@@ -195,9 +174,7 @@ def test_samples_are_evenly_spread(tmp_path, total, count, positions):
 @pytest.mark.parametrize(
     ("numbers", "text"),
     [
-        ([], ""),
-        ([1, 2, 3, 7, 9, 10], "1-3, 7, 9-10"),
-        ([1, 3, 5, 7, 9], "1, 3, 5, 7, 9"),
+        *(([], ""), ([1, 2, 3, 7, 9, 10], "1-3, 7, 9-10"), ([1, 3, 5, 7, 9], "1, 3, 5, 7, 9")),
         ([1, 3, 5, 7, 9, 11], "1, 3, 5, 7, 9, …"),
     ],
 )

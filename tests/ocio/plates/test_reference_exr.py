@@ -5,11 +5,14 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet.cli.main import main
+from crfnet.errors import PlateError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.plates import exr
+from crfnet.plates.frame_files import read_frame
 from tests.helpers.images import write_image
 from tests.helpers.reference_exr import OpenEXR, read_reference
+from tests.helpers.refusals import refused
 
 
 @pytest.fixture
@@ -35,18 +38,19 @@ def test_the_pixels_are_the_entries_of_the_lut(lut, tmp_path, depth, sample):
     assert header["compression"] == OpenEXR.ZIPS_COMPRESSION
 
 
-def test_alpha_is_multiplied_once(lut, tmp_path):
-    _, pixels = read_reference(linearized(lut, tmp_path, np.full((4, 5, 4), 128, dtype=np.uint8)))
-    alpha = 128 / 255
-    np.testing.assert_allclose(pixels[..., :3], alpha**3, rtol=1e-3)
-    np.testing.assert_allclose(pixels[..., 3], alpha, rtol=1e-3)
-
-
 def test_the_header_names_the_space_of_the_light(lut, tmp_path):
     path = linearized(lut, tmp_path, np.zeros((4, 5, 3), dtype=np.uint8), "--output-space", "ACEScg")
     header, _ = read_reference(path)
     assert header["colorInteropID"] == "lin_ap1_scene"
     assert header["dataWindow"][1].tolist() == [4, 3]
+
+
+def test_alpha_of_whole_numbers_is_refused(tmp_path):
+    """It holds the numbers of objects, not coverage."""
+    picture = {"RGB": np.full((4, 5, 3), 0.5, np.float32), "A": np.ones((4, 5), np.uint32)}
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, picture).write(str(tmp_path / "a.exr"))
+    with refused(PlateError, "exr_channels"):
+        read_frame(tmp_path / "a.exr", is_encoded=True)
 
 
 @pytest.mark.parametrize("width", [90, 8000])  # rows of less and of more than a page of memory

@@ -12,14 +12,12 @@ from training.crfnet2017 import train as command
 from training.crfnet2017.export import fit_worth, fold_normalization, load_network
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
-from training.crfnet2017.stages import StageTask
-from training.crfnet2017.train import RunConfig, Trainer, TrainingState, start_from, train
+from training.crfnet2017.train import RunConfig, StageTask, Trainer, start_from, train
 from training.crfnet2017.windows import draw_windows
-from training.export.golden import PARITY, assert_parity, write_golden
-from training.export.model_folder import write_config
+from training.export.model_folder import PARITY, assert_parity, write_config, write_golden
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded
-from training.network.moving_average import moving_average
 from training.provenance import read_run
+from training.state import TrainingState, moving_average
 
 REGRESSION = RunConfig("regress", Recipe(steps=2, batch=2, mixed=False, averaged_steps=2.0))
 
@@ -121,7 +119,7 @@ def test_a_run_logs_and_is_recorded(run):
 def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run, tmp_path):
     train(scenes, validation, tmp_path, REGRESSION, digest="data", stop=1)
     first, before = states(tmp_path)
-    assert train(scenes, validation, tmp_path, REGRESSION, digest="data").step == 2
+    assert train(scenes, validation, tmp_path, REGRESSION, digest="data").done == 2
     averaged, moving = states(tmp_path)
     assert equal(averaged, states(run)[0])
     assert equal(first, before)
@@ -135,20 +133,8 @@ def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys
     monkeypatch.setattr(command, "training_digest", lambda data: "data")
     monkeypatch.setattr(command, "VALIDATION_WINDOWS", 2)
     monkeypatch.setattr(command, "RECIPES", {"default": {"regress": replace(REGRESSION.recipe, augmented=True)}})
-    options = [
-        "train",
-        "--data",
-        "data",
-        "--run",
-        str(tmp_path),
-        "--stage",
-        "regress",
-        "--device",
-        "cpu",
-        "--steps",
-        "1",
-    ]
-    monkeypatch.setattr("sys.argv", options)
+    options = ["train", "--data", "data", "--stage", "regress", "--device", "cpu", "--steps", "1", "--run"]
+    monkeypatch.setattr("sys.argv", [*options, str(tmp_path)])
     command.main()
     assert capsys.readouterr().out.startswith("step,train_loss,validation\n1,")
     assert load_network(tmp_path).network.head.out_features == 11

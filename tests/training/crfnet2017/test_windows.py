@@ -6,8 +6,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics.windows import filled_bins
-from training.crfnet2017.augmentation import augmented
-from training.crfnet2017.windows import draw_windows, filled, render, scene_pixels
+from training.crfnet2017.windows import augmented, draw_windows, filled, render, scene_pixels
 from training.data.scenes import Scene
 from training.synthesis.camera import apply_response
 

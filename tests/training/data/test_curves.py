@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.response.transfer_functions import srgb_encode
 from training.data.curves import CurveSource, camera_response, geometric_median, read_base_curves
 

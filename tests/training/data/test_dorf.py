@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CurveError
 from training.data.curves import read_dorf
 from training.data.dorf import main, parse_dorf
@@ -27,11 +25,12 @@ def all_records(last=None):
 
 
 def test_training_reads_the_converted_file(tmp_path, capsys):
-    source, out = tmp_path / "dorfCurves.txt", tmp_path / "201_CRF_data.mat"
+    source, out = tmp_path / "dorfCurves.txt", tmp_path / "dorf" / "201_CRF_data.mat"
+    out.parent.mkdir()
     source.write_text(all_records())
     main([str(source), str(out)])
     assert capsys.readouterr().out == f"{out}: 201 curves\n"
-    curves = read_dorf(out)
+    curves = read_dorf(tmp_path)
     assert curves.shape == (201, 1024)
     np.testing.assert_allclose(curves[[0, 140]], [UNIFORM**0.3, UNIFORM], atol=1e-6)
 

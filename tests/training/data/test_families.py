@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.posterior import Family
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error

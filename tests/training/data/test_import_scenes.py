@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
-
 from crfnet_core.errors import PhotoError
 from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import chart, manifest, ramp, write_dng, write_float

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
-
 from tests.helpers.images import read_image
 from tests.helpers.linear_pictures import SWATCH, chart, manifest, ramp, swatch_means, write_dng, write_float
 from training.data.import_scenes import import_scene, main

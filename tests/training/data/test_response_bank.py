@@ -1,12 +1,11 @@
 import numpy as np
 import pytest
-
-scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extra")
+import scipy.io
 
 from crfnet_core.posterior import Family, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from training.data import response_bank
-from training.data.real.photographs import Body
+from training.data.real_photographs import Body
 from training.data.response_bank import COUNTS, make_bank, write_bank
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -35,7 +34,7 @@ def bodies(without):
 @pytest.fixture
 def data(tmp_path):
     (tmp_path / "dorf").mkdir()
-    scipy_io.savemat(tmp_path / "dorf/201_CRF_data.mat", {"B": UNIFORM ** DORF[:, None]})
+    scipy.io.savemat(tmp_path / "dorf/201_CRF_data.mat", {"B": UNIFORM ** DORF[:, None]})
     return tmp_path
 
 

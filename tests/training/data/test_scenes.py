@@ -1,7 +1,5 @@
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from training.data.scenes import read_scenes, split_scenes
 

@@ -3,8 +3,6 @@ import json
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from training.data import splits
 from training.data.splits import SPLITS_FILE, curve_groups, held_out_curves

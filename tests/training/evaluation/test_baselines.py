@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.response.curve import LEAST_SLOPE, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.families import with_headroom

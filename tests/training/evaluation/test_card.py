@@ -4,12 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import ModelConfig
 from training.evaluation.models import Model
-from training.evaluation.protocols import Evaluation, Settings
+from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.report.document import write_report
 from training.evaluation.test_sets import bundled_test_set
 from training.export import model_card
@@ -20,8 +18,8 @@ def measured(tmp_path_factory, fixed_model):
     """A copy of the fixed model under its own name, and its report."""
     folder = tmp_path_factory.mktemp("card")
     shutil.copytree(fixed_model, folder / "fixed")
-    settings = Settings(folder / "out", (Model.find(str(folder / "fixed")),), ("p0",), photographs=5, workers=1)
-    report = Evaluation(settings, bundled_test_set()).run()
+    models = (Model.find(str(folder / "fixed")),)
+    report = evaluate(Evaluation(folder / "out", bundled_test_set(), models, ["p0"], 5, stressed=0, workers=1))
     path = folder / "report.json"
     write_report(path, replace(report, notes=[]))  # as if measured on the data
     return folder / "fixed", path, report

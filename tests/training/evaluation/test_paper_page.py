@@ -1,8 +1,6 @@
 import pytest
 
 pytest.importorskip("torch", reason="training needs the train extra")
-pytest.importorskip("matplotlib", reason="training needs the train extra")
-
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER, WAYS
 from training.evaluation.paper_page import EXPERIMENTS, draw_stress, page_text

@@ -5,24 +5,20 @@ from dataclasses import replace
 
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import simulated
-from training.evaluation.measure.simulated import Job
+from training.evaluation.measure.simulated import simulated_photo
 from training.evaluation.models import Model
-from training.evaluation.plan import CLEAN, RESOLUTIONS, Condition
-from training.evaluation.protocols import Evaluation, Settings
+from training.evaluation.plan import CLEAN, RESOLUTIONS, Condition, TestPhotograph
+from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.report.document import read_report
 from training.evaluation.test_sets import bundled_test_set
 
 #: Mean figures of `python -m training.evaluation --quick --protocol p0 --photographs 10`, by the head of the packaged
 #: model's hash. A new model, or another pipeline: measure, look whether it got better, and write them down here.
-EXPECTED = {
-    "14fa0631c1d8": {"E_est mean": 1.6195, "E_lin mean": 3.7092, "E_est ratio": 0.739, "shape mean": 0.2379},
-}
+EXPECTED = {"14fa0631c1d8": {"E_est mean": 1.6195, "E_lin mean": 3.7092, "E_est ratio": 0.739, "shape mean": 0.2379}}
 
 #: The change that rounding on other processors may make: a few windows of a few photographs.
 PLATFORM = 0.03
@@ -37,16 +33,11 @@ def model(fixed_model):
 def stressed(tmp_path_factory, model):
     """The report of the fixed model: P0, and three conditions."""
     out = tmp_path_factory.mktemp("quick")
-    settings = Settings(
-        out,
-        (model,),
-        protocols=("p0", "paper"),
-        photographs=15,
-        workers=1,
-        stress_photographs=3,
-        conditions=(CLEAN, Condition("blur variance 2", blur=2.0), Condition("noise variance 4", noise=4.0)),
-    )
-    return out, Evaluation(settings, bundled_test_set()).run()
+    conditions = (CLEAN, Condition("blur variance 2", blur=2.0), Condition("noise variance 4", noise=4.0))
+    with pytest.MonkeyPatch.context() as patch:
+        for module in ("plan", "protocols"):
+            patch.setattr(f"training.evaluation.{module}.CONDITIONS", conditions)
+        return out, evaluate(Evaluation(out, bundled_test_set(), (model,), ["p0", "paper"], 15, stressed=3, workers=1))
 
 
 def test_the_packaged_model_is_as_good_as_it_was(tmp_path):
@@ -85,8 +76,7 @@ def test_resolutions_are_area_means_of_an_original():
     test_set = bundled_test_set()
     test_set = replace(test_set, originals=test_set.scenes[:1])
     number, (usual, *_, full) = len(test_set.scenes), RESOLUTIONS
-    job = Job("paper", (), test_set, ())
-    small, large = (job.photo(number, 0, condition) for condition in (usual, full))
+    small, large = (simulated_photo(test_set, TestPhotograph(number, 0, each)) for each in (usual, full))
     assert small.shape[:2] == tuple(side // 4 for side in large.shape[:2])
     assert test_set.digest == bundled_test_set().digest
 
@@ -121,17 +111,17 @@ def test_an_interrupted_evaluation_goes_on_and_ends_the_same(stressed, fixed_mod
     assert len({row["photograph"] for row in lines}) == 6
     taken = []
     with monkeypatch.context() as patch:
-        photo = Job.photo
-        patch.setattr(Job, "photo", lambda job, *which: taken.append(which) or photo(job, *which))
+        photo = simulated.simulated_photo
+        patch.setattr(simulated, "simulated_photo", lambda *which: taken.append(which) or photo(*which))
         main(arguments)
     assert len(taken) == 9
     assert read_report(tmp_path / "report.json").table("P0") == stressed[1].table("P0")
 
 
 def test_the_command_line_chooses_what_is_measured(fixed_model, tmp_path):
-    quick = parsed(["--quick", "--out", str(tmp_path), "--model", str(fixed_model), "crfnet2017"]).settings
+    quick = parsed(["--quick", "--out", str(tmp_path), "--model", str(fixed_model), "crfnet2017"])
     assert quick.protocols == ("p0", "paper")
-    assert (quick.photographs, quick.stress_photographs, quick.workers, quick.seed) == (40, 5, 2, 2017)
+    assert (quick.photographs, quick.stressed, quick.workers) == (40, 5, 2)
     assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-2.0"]
 
 
@@ -153,6 +143,6 @@ def test_mistakes_are_one_line(tmp_path, arguments, message):
 
 @pytest.mark.parametrize("held_out", [(), (1,)])
 def test_p2_refuses_a_model_that_may_know_its_curves(model, tmp_path, held_out):
-    settings = Settings(tmp_path, (replace(model, held_out_curves=held_out),), ("p2",))
+    models, test_set = (replace(model, held_out_curves=held_out),), replace(bundled_test_set(), held_out=(1, 5))
     with pytest.raises(CRFNetError, match="does not list the held-out curves"):
-        Evaluation(settings, replace(bundled_test_set(), held_out=(1, 5))).run()
+        evaluate(Evaluation(tmp_path, test_set, models, ["p2"], photographs=1, stressed=1, workers=1))

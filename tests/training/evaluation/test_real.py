@@ -7,26 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extra")
+import scipy.io
 
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.posterior import IN_CAMERA, Posterior, Prior
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
-from training.data.real.photographs import real_photographs
+from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
-from training.evaluation.measure.real import (
-    bank_without_fold,
-    mean_of_other_bodies,
-    ways_of,
-    without_exif,
-)
+from training.evaluation.measure.real import cached_bank, mean_of_other_bodies, ways_of, without_exif
 from training.evaluation.models import Model
-from training.evaluation.protocols import Evaluation, Settings
-from training.evaluation.report.card import accuracy, bodies_table
+from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set
+from training.export.model_card import accuracy, bodies_table
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -87,7 +81,7 @@ def write_data(folder, root):
         ],
     )
     (folder / "dorf").mkdir()
-    scipy_io.savemat(folder / "dorf/201_CRF_data.mat", {"B": bundled_test_set().curves})
+    scipy.io.savemat(folder / "dorf/201_CRF_data.mat", {"B": bundled_test_set().curves})
     photo = "photos/plate.jpg"
     write_rows(
         folder / "real_bodies/cases.csv",
@@ -114,7 +108,7 @@ def write_rows(path, header, rows):
 
 def measured(model, out, data):
     test_set = replace(bundled_test_set(), data=data)
-    return Evaluation(Settings(out, (model,), protocols=("p4",), workers=1), test_set).run()
+    return evaluate(Evaluation(out, test_set, (model,), ["p4"], photographs=1, stressed=1, workers=1))
 
 
 def counts(report, table):
@@ -159,7 +153,7 @@ def test_p4_answers_by_the_evidence_of_the_model_and_the_bank_of_the_other_bodie
     out, data = measured_once[0], measured_once[0] / "data"
     nearer = []
     for case in real_photographs(data)["real"][:2]:
-        bank = bank_without_fold(case, replace(bundled_test_set(), data=data))
+        bank = cached_bank(data, without=case.fold)
         prior_alone = Posterior.from_evidences(bank, Prior.load()).curve
         (row,) = photographs(out, photograph=case.name, estimator="fixed_model, metadata ignored")
         nearer.append(estimation_error(case.truth(), prior_alone) - row["E_est"])
@@ -238,7 +232,7 @@ def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):
     one, two, _ = real_photographs(data)["real"]
     brightest = [
         max(bank.brightness[bank.members(family), 10].max() for family in IN_CAMERA)
-        for bank in (bank_without_fold(case, replace(bundled_test_set(), data=data)) for case in (one, two))
+        for bank in (cached_bank(data, without=case.fold) for case in (one, two))
     ]
     assert brightest[0] > brightest[1] + 0.1
 

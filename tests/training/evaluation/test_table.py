@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from training.evaluation.measure.figures import curve_figures
-from training.evaluation.measure.table import Cases, Table
+from training.evaluation.measure.table import Table
+from training.evaluation.report.cases import Cases
 
 SETTINGS = {"seed": 1, "test_set": "abc"}
 
@@ -20,20 +19,20 @@ def row(photograph, estimator="model", model="123", **columns):
 
 @pytest.fixture
 def table(tmp_path):
-    table = Table(tmp_path / "out" / "photographs.jsonl", SETTINGS, "c")
+    table = Table(tmp_path / "out" / "photographs.jsonl", SETTINGS)
     table.add([row(name, E_est=number / 8) for number, name in enumerate("abc")])
     table.add([row("a", "gamma 2.2", "", E_est=1.0)])
     return table
 
 
-def again(table, *, settings=SETTINGS, code="c"):
-    return Table(table.path, settings, code)
+def again(table, *, settings=SETTINGS):
+    return Table(table.path, settings)
 
 
 def test_rows_come_back_in_the_order_asked_for(table):
     rows = again(table).rows("P0", {"model": "123"}, ["c", "a"])["model"]
     assert [one["E_est"] for one in rows] == [0.25, 0.0]
-    assert table.baselines("P0") == ["gamma 2.2"]
+    assert table.baselines("P0") == {"gamma 2.2": ""}
 
 
 def test_rows_of_another_model_have_to_be_measured(table):
@@ -56,9 +55,10 @@ def test_a_row_that_was_cut_off_is_measured_again(table):
     assert again(table).rows("P0", {"gamma 2.2": ""}, "a")["gamma 2.2"][0]["E_est"] == 2.0
 
 
-def test_rows_of_other_code_are_kept_and_noticed(table):
+def test_rows_of_other_code_are_kept_and_noticed(table, monkeypatch):
     assert not again(table).is_of_other_code
-    changed = again(table, code="d")
+    monkeypatch.setattr("training.evaluation.measure.table.code_digest", lambda: "other")
+    changed = again(table)
     assert changed.is_of_other_code
     assert not changed.lacks("P0", "a", "model", "123")
 

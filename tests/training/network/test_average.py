@@ -17,7 +17,7 @@ RECORD = {
 
 def run_of(folder, weight, **changed):
     folder.mkdir()
-    torch.save({"net": {"weight": torch.tensor([weight]), "batches": torch.tensor(7)}}, folder / "last.pt")
+    torch.save({"network": {"weight": torch.tensor([weight]), "batches": torch.tensor(7)}}, folder / "last.pt")
     (folder / "run.json").write_text(json.dumps(RECORD | changed))
     return folder
 
@@ -25,7 +25,7 @@ def run_of(folder, weight, **changed):
 def test_the_mean_counts_each_run_by_its_share(tmp_path):
     runs = [run_of(tmp_path / "a", 1.0), run_of(tmp_path / "b", 5.0, commit="1" * 40)]
     checkpoint = average(runs, [1, 3], tmp_path / "mean")
-    net = torch.load(checkpoint, weights_only=True)["net"]
+    net = torch.load(checkpoint, weights_only=True)["network"]
     assert net["weight"].tolist() == [4.0]
     assert net["batches"].item() == 7
     record = json.loads((tmp_path / "mean" / "run.json").read_text())
@@ -36,7 +36,7 @@ def test_the_mean_counts_each_run_by_its_share(tmp_path):
 def test_a_run_and_one_that_went_on_from_it_are_related(tmp_path):
     first = run_of(tmp_path / "a", 1.0)
     second = run_of(tmp_path / "b", 3.0, start=start_record(first / "last.pt"))
-    net = torch.load(average([second, first], [1, 1], tmp_path / "mean"), weights_only=True)["net"]
+    net = torch.load(average([second, first], [1, 1], tmp_path / "mean"), weights_only=True)["network"]
     assert net["weight"].tolist() == [2.0]
 
 

@@ -66,15 +66,17 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(shards, tmp_path, monkey
     monkeypatch.setattr(training_run, "_train_epoch", real)
     train(shards, tmp_path / "halves", RECIPE, SIZES)
     assert read_log(tmp_path / "halves") == read_log(tmp_path / "whole")
-    first, second = (torch.load(tmp_path / run / "last.pt", weights_only=True)["net"] for run in ("whole", "halves"))
+    first, second = (
+        torch.load(tmp_path / run / "last.pt", weights_only=True)["network"] for run in ("whole", "halves")
+    )
     assert all(torch.equal(first[name], second[name]) for name in first)
 
 
 def test_a_run_yields_the_average_of_its_weights(shards, tmp_path):
     last = train(shards, tmp_path / "averaged", replace(RECIPE, epochs=1, averaged_steps=4), SIZES)
     alone = train(shards, tmp_path / "alone", replace(RECIPE, epochs=1, averaged_steps=1), SIZES)
-    averaged, moving = (torch.load(last, weights_only=True)[part] for part in ("net", "moving"))
-    own, others = (torch.load(alone, weights_only=True)[part] for part in ("net", "moving"))
+    averaged, moving = (torch.load(last, weights_only=True)[part] for part in ("network", "moving"))
+    own, others = (torch.load(alone, weights_only=True)[part] for part in ("network", "moving"))
     assert all(torch.equal(own[name], others[name]) for name in own)
     weight = "photograph.location.weight"
     assert torch.equal(others[weight], moving[weight])
@@ -102,7 +104,7 @@ def test_a_run_starts_from_the_weights_of_another(shards, tmp_path):
     first = train(shards, tmp_path / "first", replace(RECIPE, epochs=1), SIZES)
     rested = replace(RECIPE, epochs=1, learning_rate=1e-12)
     second = train(shards, tmp_path / "second", rested, SIZES, init=first)
-    before, after = (dict(torch.load(run, weights_only=True)["net"]) for run in (first, second))
+    before, after = (dict(torch.load(run, weights_only=True)["network"]) for run in (first, second))
     for name in ("photograph.location.weight", "score.weight"):
         torch.testing.assert_close(after[name], before[name])
     start = json.loads((tmp_path / "second" / "run.json").read_text())["start"]

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.synthesis.camera import apply_response
 from training.synthesis.camera_draws import WINDOWS, FrameKind, Frames, draw_development
 from training.synthesis.development import Development, ToneMapping, develop, hue_kept, looked_up, point_sampled

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.data.curves import CurveSource
 from training.synthesis import augmentation
 from training.synthesis.augmentation import composited, recolor

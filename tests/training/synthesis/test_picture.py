@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, smoothed, split
 
 

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.data.scenes import LUMINANCE, Scene
 from training.synthesis.camera import (
     TARGET_BRIGHTNESS,

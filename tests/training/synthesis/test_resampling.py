@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from training.data.scenes import Scene
 from training.synthesis.resampling import AffineResampling
 

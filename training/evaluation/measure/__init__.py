@@ -2,7 +2,7 @@
 
 - `table`: a row for each photograph and estimator, on disk.
 - `figures`: the columns of a row.
-- `simulated`: P0, P2 and P3.
+- `simulated`: P0, P2 and the experiments of the paper.
 - `real`: P4.
 - `unusual`: P6.
 """

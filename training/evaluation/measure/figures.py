@@ -1,7 +1,5 @@
 """The figures of one estimator on one photograph, as columns of a row of the table."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

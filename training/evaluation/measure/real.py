@@ -1,9 +1,8 @@
 """Measure real photographs (P4), each alone and several of one body together, as the product reads them."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache, partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.photographs import RealPhotograph, real_photographs
+from training.data.real_photographs import RealPhotograph
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import (
     GAMMA,
@@ -33,12 +32,15 @@ from training.evaluation.baselines import (
 )
 from training.evaluation.measure.figures import curve_figures, estimate_figures, first_weights
 from training.evaluation.measure.table import Row, Table
-from training.evaluation.models import Model
+from training.evaluation.models import Model, load_network
 from training.evaluation.test_sets import TestSet
 from training.synthesis.camera import code_counts
 
 #: The most photographs of a body that are estimated together, and the fewest.
 MOST_POOLED, LEAST_POOLED = 4, 2
+
+#: The bank without the bodies of a fold, made once for each.
+cached_bank = cache(make_bank)
 
 #: What follows the name of a protocol whose photographs are estimated together.
 POOLED = ", pooled"
@@ -56,51 +58,53 @@ def ways_of(model: str) -> list[str]:
 def measure_real(
     protocol: str, photographs: Sequence[RealPhotograph], models: Sequence[Model], table: Table, test_set: TestSet
 ) -> None:
-    """Add to the table what it lacks; a photograph is read once for all models.
+    """Add to the table what it lacks of a folder: baselines, and models on photographs alone and several of a body.
 
-    `photographs`: all photographs of a folder. `test_set`: the responses of DoRF, for the baselines, and the data
+    `photographs`: all photographs of the folder. `test_set`: the responses of DoRF, for the baselines, and the data
     folder. The bank that a photograph is estimated with knows nothing of the bodies of its fold.
     """
-    wanted = [
-        photograph
-        for photograph in photographs
-        if table.lacks(protocol, photograph.name, GAMMA) or _lacking(protocol, photograph, models, table)
-    ]
+    assert test_set.data is not None
+    _measure_baselines(protocol, photographs, table, test_set)
+    _measure_models(protocol, [[photograph] for photograph in photographs], models, table, test_set.data)
+    _measure_models(protocol + POOLED, pooled_groups(photographs), models, table, test_set.data)
+
+
+def _measure_baselines(protocol: str, photographs: Sequence[RealPhotograph], table: Table, test_set: TestSet) -> None:
+    """Add the baselines that the table lacks."""
+    wanted = [photograph for photograph in photographs if table.lacks(protocol, photograph.name, GAMMA)]
     truths = {photograph.measured: photograph.truth() for photograph in photographs if wanted}
-    for photograph in tqdm(wanted, desc=protocol, unit="photograph", disable=not wanted):
-        photo, true = read_real_photo(photograph), truths[photograph.measured]
-        counts, row = code_counts(photo), partial(_row, protocol, photograph, true)
-        if table.lacks(protocol, photograph.name, GAMMA):
-            others = mean_of_other_bodies(photograph, photographs, truths)
-            curves = test_set.constants | {OTHER_BODIES: others, ORACLE_HEADROOM: with_best_headroom(others, true)}
-            curves |= {ORACLE_DORF: nearest_of(test_set.curves, true)} | oracle_curves(true)
-            table.add(row(name, "", curve_figures(true, curve, counts)) for name, curve in curves.items())
-        for model in _lacking(protocol, photograph, models, table):
-            answers = estimates([photo], photograph.kind, _network(model), bank_without_fold(photograph, test_set))
-            ways = zip(ways_of(model.name), answers, strict=True)
-            table.add(row(way, model.key, estimate_figures(true, answer, counts)) for way, answer in ways)
+    for photograph in wanted:
+        counts, true = code_counts(read_real_photo(photograph)), truths[photograph.measured]
+        others = mean_of_other_bodies(photograph, photographs, truths)
+        curves = test_set.constants | {OTHER_BODIES: others, ORACLE_HEADROOM: with_best_headroom(others, true)}
+        curves |= {ORACLE_DORF: nearest_of(test_set.curves, true)} | oracle_curves(true)
+        figures = {name: curve_figures(true, curve, counts) for name, curve in curves.items()}
+        table.add(_rows(protocol, photograph, true, "", figures))
 
 
-def measure_pooled(
-    protocol: str, photographs: Sequence[RealPhotograph], models: Sequence[Model], table: Table, test_set: TestSet
+def _measure_models(
+    protocol: str, groups: Sequence[Sequence[RealPhotograph]], models: Sequence[Model], table: Table, data: Path
 ) -> None:
-    """Add to the table what it lacks: the answer for a body, measured on each of the photographs that it is made of.
+    """Add what the table lacks: the answer for each group of one body, measured on each photograph of the group.
 
-    Every photograph has the response of its own exposure stack. For the parameters see `measure_real`.
+    Every photograph has the response of its own exposure stack. A photograph is read once for all models.
     """
-    for group in pooled_groups(photographs):
-        for model in models:
-            if not any(_lacking(protocol, photograph, [model], table) for photograph in group):
-                continue
-            photos, bank = [read_real_photo(photograph) for photograph in group], bank_without_fold(group[0], test_set)
-            answers = estimates(photos, group[0].kind, _network(model), bank)
+
+    def lacks(model: Model, group: Sequence[RealPhotograph]) -> bool:
+        rows = product(group, ways_of(model.name))
+        return any(table.lacks(protocol, photograph.name, way, model.key) for photograph, way in rows)
+
+    for group in tqdm(groups, desc=protocol, unit="group"):
+        if not (lacking := [model for model in models if lacks(model, group)]):
+            continue
+        photos, bank = [read_real_photo(photograph) for photograph in group], cached_bank(data, without=group[0].fold)
+        for model in lacking:
+            answers = estimates(photos, group[0].kind, load_network(model), bank)
             for photograph, photo in zip(group, photos, strict=True):
                 true, counts = photograph.truth(), code_counts(photo)
-                ways = zip(ways_of(model.name), answers, strict=True)
-                table.add(
-                    _row(protocol, photograph, true, way, model.key, estimate_figures(true, answer, counts))
-                    for way, answer in ways
-                )
+                figures = [estimate_figures(true, answer, counts) for answer in answers]
+                named = dict(zip(ways_of(model.name), figures, strict=True))
+                table.add(_rows(protocol, photograph, true, model.key, named))
 
 
 def pooled_groups(photographs: Sequence[RealPhotograph]) -> list[list[RealPhotograph]]:
@@ -111,40 +115,29 @@ def pooled_groups(photographs: Sequence[RealPhotograph]) -> list[list[RealPhotog
     bodies: dict[str, list[RealPhotograph]] = {}
     for photograph in photographs:
         bodies.setdefault(photograph.body_key, []).append(photograph)
-    return [_evenly(members) for members in bodies.values() if len(members) >= LEAST_POOLED]
+    groups = []
+    for members in bodies.values():
+        if len(members) >= LEAST_POOLED:
+            steps = np.linspace(0, len(members) - 1, min(len(members), MOST_POOLED)).round().astype(int)
+            groups.append([members[step] for step in steps])
+    return groups
 
 
-def _evenly(members: list[RealPhotograph]) -> list[RealPhotograph]:
-    """Return at most `MOST_POOLED` photographs, at even steps."""
-    steps = np.linspace(0, len(members) - 1, min(len(members), MOST_POOLED)).round().astype(int)
-    return [members[step] for step in steps]
-
-
-def _lacking(protocol: str, photograph: RealPhotograph, models: Sequence[Model], table: Table) -> list[Model]:
-    """Return the models that have to be asked about a photograph."""
-    return [
-        model
-        for model in models
-        if any(table.lacks(protocol, photograph.name, way, model.key) for way in ways_of(model.name))
-    ]
-
-
-def _row(
-    protocol: str, photograph: RealPhotograph, true: ResponseCurve, estimator: str, model: str, figures: dict[str, Any]
-) -> Row:
-    """Return a row of the table."""
-    return {
-        "protocol": protocol,
-        "photograph": photograph.name,
-        "estimator": estimator,
-        "model": model,
+def _rows(
+    protocol: str, photograph: RealPhotograph, true: ResponseCurve, model: str, figures: dict[str, dict[str, Any]]
+) -> Iterator[Row]:
+    """Yield the rows of a photograph, one for each estimator in `figures`; `model` is empty for baselines."""
+    columns = {
         "body": photograph.body,
         "body key": photograph.body_key,
         "kind": photograph.kind,
         "grade": photograph.grade,
         "caution": photograph.caution,
         "true weights": first_weights(true),
-    } | figures
+    }
+    for name, row in figures.items():
+        key = {"protocol": protocol, "photograph": photograph.name, "estimator": name, "model": model}
+        yield key | columns | row
 
 
 def read_real_photo(photograph: RealPhotograph) -> Photo:
@@ -171,26 +164,6 @@ def without_exif(photo: Photo) -> Photo:
     """Return the photograph as a web site sends it: its file states only the size of the picture."""
     height, width = photo.pixels.shape[:2]
     return photo.with_metadata(FileMetadata(width=width, height=height, file_format="WebP"))
-
-
-def bank_without_fold(photograph: RealPhotograph, test_set: TestSet) -> ResponseBank:
-    """Return the bank without the bodies of the photograph's fold, made once for each fold."""
-    assert test_set.data is not None
-    return _bank_of_fold(photograph.photograph.parents[1], photograph.fold, test_set.data)
-
-
-@cache
-def _bank_of_fold(folder: Path, fold: str, data: Path) -> ResponseBank:
-    """Return the bank without the bodies of a fold of a folder."""
-    members = [photograph for photographs in real_photographs(data).values() for photograph in photographs]
-    first = next(one for one in members if one.photograph.parents[1] == folder and one.fold == fold)
-    return make_bank(data, without=first)
-
-
-@cache
-def _network(model: Model) -> ResponseNetwork:
-    """Return a model's network, loaded once."""
-    return ResponseNetwork.load(model.folder)
 
 
 def mean_of_other_bodies(

@@ -1,14 +1,11 @@
 """Measure simulated photographs (P0, P2, paper) with every model and baseline, on several processes."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
-from itertools import compress, groupby
+from functools import lru_cache, partial
+from itertools import groupby
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +13,6 @@ from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -25,8 +21,8 @@ from training.data.scenes import Scene, area_averaged
 from training.evaluation.baselines import GAMMA, oracle_curves
 from training.evaluation.measure.figures import curve_figures, estimate_figures
 from training.evaluation.measure.table import Row, Table
-from training.evaluation.models import Model
-from training.evaluation.plan import CLEAN, Condition, TestPhotograph
+from training.evaluation.models import Model, load_network
+from training.evaluation.plan import CLEAN, SEED, Condition, TestPhotograph
 from training.evaluation.test_sets import SceneFile, TestSet
 from training.synthesis.camera import code_counts, render_photo, sensor_light
 
@@ -53,28 +49,14 @@ class Job:
     protocol: the protocol; in `PAPER` gamma 2.2 is the only baseline
     has_baselines: whether to measure the baselines
     bank: the responses that estimates choose from; None for the packaged ones
-    seed: of dither and noise
     """
 
     protocol: str
-    photographs: tuple[TestPhotograph, ...]
+    photographs: Sequence[TestPhotograph]
     test_set: TestSet
     models: tuple[Model, ...]
     has_baselines: bool = True
     bank: ResponseBank | None = None
-    seed: int = 2017
-
-    def photo(self, scene: int, curve: int, condition: Condition) -> Photo:
-        """Return one photograph; its dither belongs to the scene, its noise to itself."""
-        return render_photo(
-            _light(self.test_set.files[scene], scene, condition.light, self.seed),
-            self.test_set.curves[curve],
-            float(self.test_set.exposures[curve]) * condition.factor,
-            np.random.default_rng([self.seed, scene, curve]),
-            name=self.test_set.files[scene].name,
-            capture=condition.capture,
-            is_gray=condition.is_gray and not condition.noise,
-        )
 
     def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
         """Return a row of the table."""
@@ -93,7 +75,7 @@ class Job:
         } | figures
 
 
-def measure_simulated(whole: Job, table: Table, *, workers: int) -> None:
+def measure_simulated(whole: Job, table: Table, workers: int) -> None:
     """Add to the table what it lacks of a job, on `workers` processes; 1 measures in this one."""
     work = list(_parts(whole, table))
     if not work:
@@ -108,20 +90,22 @@ def measure_simulated(whole: Job, table: Table, *, workers: int) -> None:
 def _parts(whole: Job, table: Table) -> Iterator[Job]:
     """Yield jobs of at most `JOB_SIZE` photographs of one scene under one light, with what the table lacks of them."""
 
-    def lacking(photograph: TestPhotograph) -> tuple[bool, ...]:
-        keys = [(model.name, model.key) for model in whole.models] + [(GAMMA, "")]
-        return tuple(table.lacks(whole.protocol, photograph.label, *key) for key in keys)
+    def lacking(photograph: TestPhotograph) -> tuple[list[Model], bool]:
+        label = photograph.label
+        models = [model for model in whole.models if table.lacks(whole.protocol, label, model.name, model.key)]
+        return models, table.lacks(whole.protocol, label, GAMMA)
 
-    def place(photograph: TestPhotograph) -> tuple[tuple[bool, ...], int, str]:
-        return lacking(photograph), photograph.scene, repr(photograph.condition.light)
+    def place(photograph: TestPhotograph) -> tuple[str, int, str]:
+        return repr(lacking(photograph)), photograph.scene, repr(photograph.condition.light)
 
-    wanted = (photograph for photograph in whole.photographs if any(lacking(photograph)))
-    ordered = sorted(wanted, key=lambda each: (*place(each), each.curve, repr(each.condition)))
-    for (lacks, *_), group in groupby(ordered, key=place):
-        members, models = tuple(group), tuple(compress(whole.models, lacks))
+    wanted = [photograph for photograph in whole.photographs if any(lacking(photograph))]
+    wanted.sort(key=lambda each: (*place(each), each.curve, repr(each.condition)))
+    for _, group in groupby(wanted, key=place):
+        members = list(group)
+        models, has_baselines = lacking(members[0])
         for start in range(0, len(members), JOB_SIZE):
             part = members[start : start + JOB_SIZE]
-            yield replace(whole, photographs=part, models=models, has_baselines=any(lacks[len(whole.models) :]))
+            yield replace(whole, photographs=part, models=tuple(models), has_baselines=has_baselines)
 
 
 def _run(work: list[Job], workers: int) -> Iterator[list[Row]]:
@@ -140,17 +124,31 @@ def run_job(job: Job) -> list[Row]:
     """Return the rows of every photograph of a job."""
     rows = []
     for photograph in job.photographs:
-        photo = job.photo(photograph.scene, photograph.curve, photograph.condition)
+        photo = simulated_photo(job.test_set, photograph)
         counts, true = code_counts(photo), ResponseCurve.from_samples(job.test_set.curves[photograph.curve])
         for name, guess in _baselines(job, true).items():
             rows.append(job.row(photograph, name, "", curve_figures(true, guess, counts)))
         has_ways = job.protocol == PAPER and photograph.condition == CLEAN
         for model in job.models:
-            ask = partial(estimate_response, photo, network=_network(model.folder), prior=Prior.load(PRIOR))
+            ask = partial(estimate_response, photo, network=load_network(model, threads=1), prior=Prior.load(PRIOR))
             for way, options in ({"": AnalysisOptions()} | (WAYS if has_ways else {})).items():
                 figures = estimate_figures(true, ask(bank=job.bank, options=options), counts)
                 rows.append(job.row(photograph, model.name + way, model.key, figures))
     return rows
+
+
+def simulated_photo(test_set: TestSet, photograph: TestPhotograph) -> Photo:
+    """Return one photograph; its dither belongs to the scene, its noise to itself."""
+    scene, curve, condition = photograph.scene, photograph.curve, photograph.condition
+    return render_photo(
+        _light(test_set.files[scene], scene, condition.light),
+        test_set.curves[curve],
+        float(test_set.exposures[curve]) * condition.factor,
+        np.random.default_rng([SEED, scene, curve]),
+        name=test_set.files[scene].name,
+        capture=condition.capture,
+        is_gray=condition.is_gray and not condition.noise,
+    )
 
 
 def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
@@ -162,21 +160,15 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
 
 
 @lru_cache(maxsize=1)
-def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> Float32Array:
+def _light(file: SceneFile, number: int, condition: Condition) -> Float32Array:
     """Return the light of a scene under the part of a condition that comes before exposure, shape (H, W, 3)."""
     scene = file.read()
     if condition.averaged:
         scene = Scene(scene.name, area_averaged(scene.pixels, condition.averaged), scene.is_panorama)
     return sensor_light(
         scene,
-        np.random.default_rng([seed, number]),
+        np.random.default_rng([SEED, number]),
         gains=condition.gains,
         is_gray=condition.is_gray,
         blur=condition.blur,
     )
-
-
-@cache
-def _network(folder: Path) -> ResponseNetwork:
-    """Return a model, loaded once per process."""
-    return ResponseNetwork.load(folder, threads=1)

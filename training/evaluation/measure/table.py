@@ -1,10 +1,8 @@
 """The table of an evaluation: one row for each photograph and estimator, in one file of JSON lines."""
 
-from __future__ import annotations
-
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -42,11 +40,10 @@ class Table:
 
     path: the file; made where absent
     settings: what every row depends on
-    code: hash of the measuring code
     """
 
-    def __init__(self, path: Path, settings: dict[str, Any], code: str) -> None:
-        self.path = path
+    def __init__(self, path: Path, settings: dict[str, Any]) -> None:
+        self.path, code = path, code_digest()
         self._rows: dict[tuple[str, ...], Row] = {}
         path.parent.mkdir(parents=True, exist_ok=True)
         header, *rows = _lines(path) or [settings | {"code": code}]
@@ -67,16 +64,15 @@ class Table:
         """Return whether this row has to be measured."""
         return (protocol, photograph, estimator, model) not in self._rows
 
-    def baselines(self, protocol: str) -> list[str]:
-        """Return the names of the baselines of a protocol, in the order of measuring."""
+    def baselines(self, protocol: str) -> dict[str, str]:
+        """Return the names of the baselines of a protocol, in the order of measuring, each with its empty model."""
         rows = self._rows.values()
-        return list(dict.fromkeys(row["estimator"] for row in rows if row["protocol"] == protocol and not row["model"]))
+        return {row["estimator"]: "" for row in rows if row["protocol"] == protocol and not row["model"]}
 
     def rows(self, protocol: str, estimators: dict[str, str], photographs: Iterable[str]) -> dict[str, list[Row]]:
-        """Return estimator -> its rows of a protocol, in the order of `photographs`.
+        """Return estimator -> its rows on `photographs`, all measured, in their order.
 
-        `estimators`: name of an estimator -> head of its model's hash, empty for baselines. `photographs`: names of
-        photographs, all measured.
+        `estimators`: name of an estimator -> head of its model's hash, empty for baselines.
         """
         names = list(photographs)
         return {
@@ -92,46 +88,11 @@ class Table:
             file.writelines(json.dumps(row) + "\n" for row in rows)
 
 
-class Cases:
-    """The rows of several estimators on the same photographs, side by side.
-
-    rows: estimator -> its rows on the N photographs, in one order
-    """
-
-    def __init__(self, rows: dict[str, list[Row]]) -> None:
-        self.rows = rows
-
-    @property
-    def first(self) -> list[Row]:
-        """The rows of the first estimator: for the columns that belong to the photograph."""
-        return next(iter(self.rows.values()))
-
-    def __len__(self) -> int:
-        """Return the number of photographs."""
-        return len(self.first)
-
-    def part(self, index: Sequence[int]) -> Cases:
-        """Return the photographs at some positions."""
-        return Cases({name: [rows[number] for number in index] for name, rows in self.rows.items()})
-
-    def groups(self, column: str) -> dict[Any, list[int]]:
-        """Return value of a column -> positions of the photographs with this value, sorted by value."""
-        groups: dict[Any, list[int]] = {value: [] for value in sorted({row[column] for row in self.first})}
-        for number, row in enumerate(self.first):
-            groups[row[column]].append(number)
-        return groups
-
-    def joined(self, other: Cases) -> Cases:
-        """Return the photographs of both, of the estimators that both have."""
-        return Cases({name: rows + other.rows[name] for name, rows in self.rows.items() if name in other.rows})
-
-
-def code_digest(root: Path = Path(__file__).parents[3]) -> str:
+def code_digest() -> str:
     """Return a short hash of the measuring code, in a checkout of the repository."""
-    digest = hashlib.sha256()
-    for pattern in MEASURING_CODE:
-        for path in sorted(root.glob(pattern)):
-            digest.update(path.read_bytes())
+    root, digest = Path(__file__).parents[3], hashlib.sha256()
+    for path in sorted(path for pattern in MEASURING_CODE for path in root.glob(pattern)):
+        digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 

@@ -1,8 +1,6 @@
 """Measure P6: pictures that must be refused, every kind of every test scene, and whether a model accepts them."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +12,9 @@ from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.photo import Photo
-from training.evaluation.measure.table import Table
-from training.evaluation.models import Model
+from training.evaluation.measure.table import Row, Table
+from training.evaluation.models import Model, load_network
+from training.evaluation.plan import SEED
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
 from training.synthesis.unusual.encodings import MESSENGER_QUALITY
@@ -41,9 +40,6 @@ WRITTEN = {
     ),
 }
 
-#: Seed of the pictures. Each has a generator of its own, so a kind that is added last changes no other picture.
-SEED = 2017
-
 
 def ways_of(model: str) -> list[str]:
     """Return the names of the ways in which P6 asks a model.
@@ -59,34 +55,32 @@ def label(scene: SceneFile, kind: UnusualKind) -> str:
     return f"{scene.name}, {kind}"
 
 
-def measure_unusual(
-    scenes: Sequence[SceneFile],
-    models: Sequence[Model],
-    table: Table,
-    *,
-    kinds: Sequence[UnusualKind] = tuple(UnusualKind),
-) -> None:
-    """Add to the table what it lacks, with the prior "camera", asked in all `ways_of`.
+def measure_unusual(scenes: Sequence[SceneFile], models: Sequence[Model], table: Table) -> None:
+    """Add to the table what it lacks of every kind of every scene, with the prior "camera", asked in all `ways_of`.
 
-    `scenes`: the scenes of the test set.
+    A picture has a random generator of its own, so a kind that is added last changes no other picture.
     """
-    listed = [(scene, kind) for scene in scenes for kind in kinds]
-    if not any(_lacks(table, model, *each) for model in models for each in listed):
-        return
-    networks = {model: ResponseNetwork.load(model.folder) for model in models}
-    pictures = tqdm(unusual_photographs(scenes, kinds), desc=PROTOCOL, total=len(listed), unit="photograph")
-    for (scene, kind), (_, photo) in zip(listed, pictures, strict=True):
-        for model, network in networks.items():
-            if _lacks(table, model, scene, kind):
-                rows = zip(ways_of(model.name), _verdicts(photo, kind, network), strict=True)
-                common = {"protocol": PROTOCOL, "photograph": label(scene, kind), "model": model.key}
-                columns = {"scene": scene.name, "kind": kind.value}
-                table.add(common | {"estimator": way, "verdict": verdict} | columns for way, verdict in rows)
+    for number, file in enumerate(tqdm(scenes, desc=PROTOCOL, unit="scene")):
+        lacking = {kind: [model for model in models if _lacks(table, file, kind, model)] for kind in UnusualKind}
+        if not any(lacking.values()):
+            continue
+        scene = file.read()
+        for place, (kind, asked) in enumerate(lacking.items()):
+            if asked:
+                photo = unusual_photo(kind, scene, np.random.default_rng([SEED, place, number]))
+                table.add(row for model in asked for row in _rows(photo, file, kind, model))
 
 
-def _lacks(table: Table, model: Model, scene: SceneFile, kind: UnusualKind) -> bool:
+def _lacks(table: Table, scene: SceneFile, kind: UnusualKind, model: Model) -> bool:
     """Return whether a model has to be asked about a picture."""
     return any(table.lacks(PROTOCOL, label(scene, kind), way, model.key) for way in ways_of(model.name))
+
+
+def _rows(photo: Photo, scene: SceneFile, kind: UnusualKind, model: Model) -> Iterator[Row]:
+    """Yield the rows of a picture: the verdicts of a model, asked in all `ways_of`."""
+    columns = {"photograph": label(scene, kind), "model": model.key, "scene": scene.name, "kind": kind.value}
+    for way, verdict in zip(ways_of(model.name), _verdicts(photo, kind, load_network(model)), strict=True):
+        yield {"protocol": PROTOCOL, "estimator": way, "verdict": verdict} | columns
 
 
 def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list[str]:
@@ -99,17 +93,3 @@ def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list
     stripped = verdict(NO_CAMERA)
     written = verdict(WRITTEN[kind]) if kind in WRITTEN else stripped
     return [written, stripped, verdict(NO_CAMERA, Device.CAMERA)]
-
-
-def unusual_photographs(
-    scenes: Iterable[SceneFile], kinds: Sequence[UnusualKind] = tuple(UnusualKind), *, seed: int = SEED
-) -> Iterator[tuple[UnusualKind, Photo]]:
-    """Yield every kind of every scene, each rendered when it is asked for; the same arguments give the same pictures.
-
-    `scenes`: the scenes of a test set; each is read once. `seed`: of everything that is random.
-    """
-    numbers = {kind: number for number, kind in enumerate(UnusualKind)}
-    for number, file in enumerate(scenes):
-        scene = file.read()
-        for kind in kinds:
-            yield kind, unusual_photo(kind, scene, np.random.default_rng([seed, numbers[kind], number]))

@@ -1,7 +1,5 @@
 """The report: a list of rows, each the figures of one estimator on one group of photographs, in report.json."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path

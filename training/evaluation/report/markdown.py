@@ -1,45 +1,20 @@
-"""report.md: every table of a report through one writer; the tables are described by data."""
+"""report.md: the text of the file report.md beside this module, filled with the tables of a report."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from training.data.real.photographs import REAL, REAL_BODIES
+from training.data.real_photographs import REAL, REAL_BODIES
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER
 from training.evaluation.report import paper
 from training.evaluation.report.document import Report, ReportRow, value
 
-
-@dataclass(frozen=True)
-class Listed:
-    """A table with a row for each estimator; `figures` are head of a column -> figure, no `groups` show all."""
-
-    tables: tuple[str, ...]
-    figures: dict[str, str]
-    groups: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Crossed:
-    """A table with a row for each group, and a column for each estimator, with `has_ways` for each way of asking."""
-
-    tables: tuple[str, ...]
-    figures: tuple[str, ...] = ("E_est mean", "shape mean")
-    has_ways: bool = False
-
-
-@dataclass(frozen=True)
-class Section:
-    """A title, a text, and tables."""
-
-    title: str
-    text: str
-    tables: tuple[Listed | Crossed, ...]
-
+#: The text; the names in braces are filled in, and a section whose tables are all empty is left out.
+TEMPLATE = Path(__file__).with_name("report.md")
 
 #: The most characters of a line of text.
 WIDTH = 120
@@ -50,15 +25,23 @@ WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "corr
 #: Baselines that report.json has and these tables have not.
 HIDDEN = ("sRGB", "Rec.709", "geometric median curve", "oracle: EMoR, 1 component")
 
-ERROR_FIGURES = {
+#: The estimators that tables by group show beside the models.
+SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
+
+#: Columns of tables: head -> figure.
+ERRORS = {
     "E_est": "E_est mean",
     "ratio": "E_est ratio",
     "wins": "E_est win rate",
     "E_lin": "E_lin mean",
     "shape": "shape mean",
 }
-
-STATED = {
+MEANS = {name: ERRORS[name] for name in ("E_est", "shape")}
+PARTIAL = {"E_est": "E_est mean", "lower": "lower mean", "scaled": "partial mean"}
+DIFFERENCES = {name: f"{name} difference" for name in MEANS}
+VERDICTS = {name: name for name in ("refused", "far off")}
+WEIGHTS = {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}
+RELIABILITY = {
     "stated": "stated mean",
     "found": "error mean",
     "rank correlation": "rank correlation",
@@ -66,92 +49,8 @@ STATED = {
     "gain": "gain",
 }
 
-#: The estimators that tables by group show beside the models.
-SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
-
-INTRODUCTION = """# How accurate the models are
-
-E_est, E_lin (x 1e-2) and the shape error in stops are defined in `docs/METHOD.md` (Eq. 32 to 34), the protocols in
-`training/README.md`. "Ratio" is the mean divided by the mean of gamma 2.2 on the same photographs, "wins" the fraction
-of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals over scenes and responses together,
-on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group give E_est, shape. The
-paper is Li & Peers, 2017, on photographs of its own.
-"""
-
-SECTIONS = (
-    Section(
-        "P0: known responses, unseen photographs",
-        f"The paper: E_est {paper.OVERALL.estimation} (gamma 2.2: {paper.GAMMA.estimation}), E_lin"
-        f" {paper.OVERALL.linearization} ({paper.GAMMA.linearization}), wins {paper.WIN_RATE.estimation:.2f}.",
-        (Listed(("P0",), ERROR_FIGURES), Crossed(("P0 by exposure", "P0 by kind"))),
-    ),
-    Section(
-        "P2: unseen responses, unseen photographs",
-        "The responses were held out of training and of the bank.",
-        (Listed(("P2",), ERROR_FIGURES),),
-    ),
-    Section(
-        "The paper's experiments",
-        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones, or to resolution 1x. Noise is"
-        " Gaussian before the response, its variance in squared 255ths of the irradiance that saturates; blur is"
-        " Gaussian in linear light, its variance in squared pixels; JPEG has subsampled chroma; resolutions are"
-        " means of larger raw photographs. Below, E_est over brightness up to 0.8, and the same with the irradiance"
-        " scaled to fit.",
-        (
-            Crossed((PAPER,), ("E_est mean", "E_est x clean")),
-            Listed((PAPER,), {"E_est": "E_est mean", "lower": "lower mean", "scaled": "partial mean"}, ("clean",)),
-        ),
-    ),
-    Section(
-        "P4: real photographs",
-        "Means over bodies, each counted once. The bank of responses knows nothing of the bodies of the photograph's"
-        ' fold. "EXIF lost": the file states only its size; "kind stated": the user then states phone, compact or'
-        ' camera. "Mean of the other bodies" does not look at the photograph; oracles choose by the true response.'
-        " Photographs with caution (edited, very small, or poorly measured) count only where a table names them.",
-        (
-            Listed(("P4 both",), ERROR_FIGURES),
-            Crossed(
-                tuple(
-                    f"P4 {folder}{caution}"
-                    for folder in (REAL, REAL_BODIES, "both")
-                    for caution in ("", ", with caution")
-                )
-            ),
-            Crossed(("P4 both by kind",)),
-        ),
-    ),
-    Section(
-        "P4: differences",
-        "The first model, as users ask it, less each other row.",
-        (Listed(("P4 both",), {error: f"{error} difference" for error in ("E_est", "shape")}),),
-    ),
-    Section(
-        "P4: several photographs of one body",
-        "Up to four photographs estimated together, and the same photographs one by one, with caution included.",
-        (Listed(("P4 both, pooled",), {"E_est": "E_est mean", "shape": "shape mean"}, ("4 photographs",)),),
-    ),
-    Section(
-        "P4: verdicts and weights",
-        'Refused is the verdict "do not trust"; far off is an accepted answer with an E_est above 3'
-        " or a shape error above 0.4 stop. Weights: the correlation over bodies of true and estimated EMoR weights.",
-        (
-            Listed(("P4 both, with caution",), {name: name for name in ("refused", "far off")}),
-            Listed(("P4 both",), {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}),
-        ),
-    ),
-    Section(
-        "P5: reliability of the uncertainty",
-        'Stated and found E_est. "Gain" is 1 if rejecting the most uncertain answers first is as good as rejecting the'
-        " worst first, and 0 if it is as good as chance.",
-        (Listed(("P5 E_est",), STATED, ("P0", "P2", "P4 both")),),
-    ),
-    Section(
-        "P6: pictures that no response explains",
-        "Accepted, of all and by kind. Files name no camera; renders and messengers' copies have the metadata that"
-        " their programs write, unless a column excludes it.",
-        (Crossed(("P6", "P6 by kind"), ("accepted",), has_ways=True),),
-    ),
-)
+#: The tables of P4: of each folder, and of both.
+REAL_TABLES = [f"P4 {folder}{part}" for folder in (REAL, REAL_BODIES, "both") for part in ("", ", with caution")]
 
 
 def report_text(report: Report) -> str:
@@ -159,67 +58,96 @@ def report_text(report: Report) -> str:
     settings = ", ".join(f"{name.replace('_', ' ')} {setting}" for name, setting in report.settings.items())
     models = ", ".join(f"{name} (`{sha256[:12]}`)" for name, sha256 in report.models.items())
     measured = fill(f"Models: {models}. Settings: {settings}.", WIDTH)
-    parts = [INTRODUCTION, measured + "\n", *(f"- {note}\n" for note in report.notes)]
-    for section in SECTIONS:
-        texts = (_listed(report, one) if isinstance(one, Listed) else _crossed(report, one) for one in section.tables)
-        tables = [text for text in texts if text]
-        parts += [f"## {section.title}\n", fill(section.text, WIDTH) + "\n", *tables] if tables else []
-    return "\n".join(parts)
+    notes = "\n\n".join(f"- {note}" for note in report.notes)
+    return filled(TEMPLATE, report_tables(report), measured=measured, notes=notes, paper=paper)
+
+
+def report_tables(report: Report) -> dict[str, str]:
+    """Return the tables of `TEMPLATE` by name."""
+    by_estimator, by_group = partial(estimator_tables, report), partial(group_table, report)
+    return {
+        "p0": by_estimator("P0", ERRORS),
+        "p0_groups": by_group("P0 by exposure", "P0 by kind"),
+        "p2": by_estimator("P2", ERRORS),
+        "conditions": by_group(PAPER, figures=("E_est mean", "E_est x clean")),
+        "partial": by_estimator(PAPER, PARTIAL, groups=("clean",)),
+        "real": by_estimator("P4 both", ERRORS),
+        "real_folders": by_group(*REAL_TABLES),
+        "real_kinds": by_group("P4 both by kind"),
+        "differences": by_estimator("P4 both", DIFFERENCES),
+        "pooled": by_estimator("P4 both, pooled", MEANS, groups=("4 photographs",)),
+        "verdicts": by_estimator("P4 both, with caution", VERDICTS),
+        "weights": by_estimator("P4 both", WEIGHTS),
+        "reliability": by_estimator("P5 E_est", RELIABILITY, groups=("P0", "P2", "P4 both")),
+        "unusual": by_group("P6", "P6 by kind", figures=("accepted",), has_ways=True),
+    }
+
+
+def filled(template: Path, tables: Mapping[str, str], **facts: Any) -> str:
+    """Return the text of a template with its tables and facts, without the sections whose tables are all empty."""
+    head, *sections = re.split(r"^(?=## )", template.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    empty = dict.fromkeys(tables, "")
+    chosen = [part for part in sections if part.format(**tables, **facts) != part.format(**empty, **facts)]
+    text = "".join([head, *chosen]).format(**tables, **facts)
+    return re.sub(r"\n{3,}", "\n\n", text).rstrip() + "\n"
 
 
 def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a Markdown table."""
-    lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
-    return "\n".join(lines) + "\n"
+    return markdown_rows((header, ["---"] * len(header), *rows)) + "\n"
 
 
-def _listed(report: Report, table: Listed) -> str:
-    """Return tables, one for each group, with a row for each estimator that has the first figure.
+def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
+    """Return rows of a Markdown table."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
-    Of models after the first, only the answers with the file's metadata are listed.
+
+def estimator_tables(report: Report, table: str, figures: Mapping[str, str], groups: Sequence[str] = ()) -> str:
+    """Return a table for each group of photographs, with a row for each estimator that has the first figure.
+
+    Of models after the first, only the answers with the file's metadata are listed. Without `groups` all are shown.
     """
     others = [f"{model}, {way}" for model in list(report.models)[1:] for way in ("EXIF", "metadata")]
-    first, unlisted = next(iter(table.figures.values())), (*HIDDEN, *others)
-    groups: dict[str, list[list[str]]] = {}
-    for row in report.table(*table.tables):
-        is_chosen = first in row and (not table.groups or row["group"] in table.groups)
-        if is_chosen and not row["estimator"].startswith(unlisted):
-            cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
-            groups.setdefault(f"{_name(row)}: {_counts(row)}", []).append(cells)
-    return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())
+    first = next(iter(figures.values()))
+    tables: dict[str, list[list[str]]] = {}
+    for row in report.table(table):
+        is_chosen = first in row and (not groups or row["group"] in groups)
+        if is_chosen and not row["estimator"].startswith((*HIDDEN, *others)):
+            cells = [row["estimator"], *(_cell(name, row.get(name)) for name in figures.values())]
+            tables.setdefault(_name(row), []).append(cells)
+    return "\n".join(markdown_table([name, *figures], rows) for name, rows in tables.items())
 
 
-def _crossed(report: Report, table: Crossed) -> str:
-    """Return a table with a row for each group and a column for each model and shown baseline."""
+def group_table(
+    report: Report, *tables: str, figures: Sequence[str] = tuple(MEANS.values()), has_ways: bool = False
+) -> str:
+    """Return a table with a row for each group, and a column for each model and shown baseline, without intervals.
+
+    With `has_ways` each way of asking a model has a column of its own.
+    """
     models = tuple(report.models)
-    estimators = dict[str, None]()
     groups: dict[str, dict[str, ReportRow]] = {}
-    for row in report.table(*table.tables):
-        name = row["estimator"]
-        if name in (*models, *SHOWN_BASELINES) or (table.has_ways and name.startswith(models)):
-            estimators[name] = None
-            groups.setdefault(_name(row), {})[name] = row
-    cells = [
-        [f"{name}: {_counts(next(iter(group.values())))}", *(_means(group.get(each), table) for each in estimators)]
-        for name, group in groups.items()
+    for row in report.table(*tables):
+        estimator = row["estimator"]
+        if estimator in (*models, *SHOWN_BASELINES) or (has_ways and estimator.startswith(models)):
+            groups.setdefault(row["group"] or row["table"], {})[estimator] = row
+    estimators = list(dict.fromkeys(estimator for group in groups.values() for estimator in group))
+    rows = [
+        [_name(next(iter(group.values()))), *(_means(group.get(each), figures) for each in estimators)]
+        for group in groups.values()
     ]
-    return markdown_table(["", *estimators], cells) if cells else ""
-
-
-def _means(row: ReportRow | None, table: Crossed) -> str:
-    """Return the figures of one estimator on one group, without intervals."""
-    return ", ".join(_number(value(row[figure])) for figure in table.figures) if row else ""
+    return markdown_table(["", *estimators], rows) if rows else ""
 
 
 def _name(row: ReportRow) -> str:
-    """Return the name of a row's group, or of its table."""
-    return str(row["group"] or row["table"])
-
-
-def _counts(row: ReportRow) -> str:
-    """Return the number of photographs, and of bodies."""
+    """Return the name of a row's group, or of its table, with the number of photographs, and of bodies."""
     bodies = f" of {row['bodies']} bodies" if "bodies" in row else ""
-    return f"{row['photographs']} photographs{bodies}"
+    return f"{row['group'] or row['table']}: {row['photographs']} photographs{bodies}"
+
+
+def _means(row: ReportRow | None, figures: Sequence[str]) -> str:
+    """Return figures of one estimator on one group, without intervals."""
+    return ", ".join(_number(value(row[figure])) for figure in figures) if row else ""
 
 
 def _cell(name: str, figure: Any) -> str:

@@ -1,7 +1,5 @@
 """The figures of the CRF-net paper (Li & Peers, CVMP 2017); E_lin is x 1e-2."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Figures of a group of photographs: means, intervals, comparisons, reliability; each a dict of name -> figure."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,7 @@ from crfnet_core.response.metrics import peak_signal_to_noise
 from crfnet_core.types import Float64Array
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure.figures import ERRORS, WEIGHTS
-from training.evaluation.measure.table import Cases
-from training.evaluation.report.bootstrap import Interval, Resampling, interval
+from training.evaluation.report.cases import Cases, Interval, Resampling
 
 #: Name of a figure -> its value, with or without an interval.
 Figures = dict[str, Any]
@@ -32,31 +29,11 @@ LEAST_BODIES = 3
 LEAST_SPREAD = 1e-12
 
 
-def column(cases: Cases, name: str, estimator: str) -> Float64Array:
-    """Return a figure of an estimator on the N photographs, shape (N,)."""
-    return np.array([row[name] for row in cases.rows[estimator]], dtype=np.float64)
-
-
-def labels(cases: Cases, name: str) -> np.ndarray:
-    """Return a column that belongs to the photographs, shape (N,)."""
-    return np.array([row[name] for row in cases.first])
-
-
-def of_scenes(cases: Cases, *, seed: int) -> Resampling:
-    """Return the weights of simulated photographs."""
-    return Resampling.of_labels(labels(cases, "scene number"), labels(cases, "curve"), seed=seed)
-
-
-def of_bodies(cases: Cases, *, seed: int) -> Resampling:
-    """Return the weights of real photographs, each body counted once."""
-    return Resampling.of_bodies(labels(cases, "body key"), seed=seed)
-
-
-def error_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
+def errors(cases: Cases, estimator: str) -> Figures:
     """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR."""
-    figures: Figures = {}
+    figures, resampling = dict[str, Any](), cases.resampling
     for error in ERRORS:
-        values, gamma = column(cases, error, estimator), column(cases, error, GAMMA)
+        values, gamma = cases.column(error, estimator), cases.column(error, GAMMA)
         figures |= {
             f"{error} mean": resampling.mean(values),
             f"{error} median": resampling.quantile(values, 0.5),
@@ -67,54 +44,54 @@ def error_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figur
     return figures | {"PSNR of the mean": _psnr(figures["E_lin mean"])}
 
 
-def difference_figures(cases: Cases, resampling: Resampling, first: str, second: str) -> Figures:
+def differences(cases: Cases, first: str, second: str) -> Figures:
     """Return the paired differences of the errors of two estimators."""
     return {
-        f"{error} difference": resampling.mean(column(cases, error, first) - column(cases, error, second))
+        f"{error} difference": cases.resampling.mean(cases.column(error, first) - cases.column(error, second))
         for error in ERRORS
     }
 
 
-def change_figures(cases: Cases, clean: Cases, resampling: Resampling, estimator: str) -> Figures:
+def changes(cases: Cases, clean: Cases, estimator: str) -> Figures:
     """Return the errors under a condition relative to the errors on the same photographs without it."""
     return {
-        f"{error} x clean": resampling.ratio(column(cases, error, estimator), column(clean, error, estimator))
+        f"{error} x clean": cases.resampling.ratio(cases.column(error, estimator), clean.column(error, estimator))
         for error in ERRORS
     }
 
 
-def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
+def partial_errors(cases: Cases, estimator: str) -> Figures:
     """Return E_est over the lower part of the brightness, and the same of scaled estimates (CRF-net paper, Fig. 9)."""
-    return {f"{name} mean": resampling.mean(column(cases, name, estimator)) for name in ("lower", "partial")}
+    return {f"{name} mean": cases.resampling.mean(cases.column(name, estimator)) for name in ("lower", "partial")}
 
 
-def verdict_figures(cases: Cases, estimator: str) -> Figures:
-    """Return how many answers of a model are accepted ("good" or "usable"), and how many of these are far off."""
+def verdicts(cases: Cases, estimator: str) -> Figures:
+    """Return how many answers of a model are accepted ("usable"), and how many of these are far off."""
     accepted = [row for row in cases.rows[estimator] if row["verdict"] != Verdict.DO_NOT_TRUST]
     far_off = [row for row in accepted if any(row.get(error, 0) > limit for error, limit in FAR_OFF.items())]
     return {"accepted": len(accepted), "refused": len(cases) - len(accepted), "far off": len(far_off)}
 
 
-def mean_figures(cases: Cases, estimator: str) -> Figures:
+def means(cases: Cases, estimator: str) -> Figures:
     """Return the plain means of the errors, and of what a model expected."""
     names = [name for name in (*ERRORS, "expected E_est", "expected shape") if name in cases.rows[estimator][0]]
-    return {f"{name} mean": float(column(cases, name, estimator).mean()) for name in names}
+    return {f"{name} mean": float(cases.column(name, estimator).mean()) for name in names}
 
 
-def reliability_figures(cases: Cases, error: str, estimator: str) -> Figures:
+def reliability(cases: Cases, error: str, estimator: str) -> Figures:
     """Return how well a model's expected E_est or shape error foretells the error (P5).
 
     "gain" is the part, at most 1, of the way from rejecting at random to rejecting the largest errors first that is
     reached when the most uncertain answers are rejected first.
     """
-    errors, stated = column(cases, error, estimator), column(cases, f"expected {error}", estimator)
+    errors, stated = cases.column(error, estimator), cases.column(f"expected {error}", estimator)
     chance, area, best = errors.mean(), rejection_curve(errors, stated).mean(), rejection_curve(errors, errors).mean()
     is_constant = np.ptp(stated) == 0 or np.ptp(errors) == 0
     return {
         "stated mean": float(stated.mean()),
         "error mean": float(chance),
         "rank correlation": 0.0 if is_constant else float(spearmanr(stated, errors).statistic),
-        "band coverage": float(column(cases, "band coverage", estimator).mean()),
+        "band coverage": float(cases.column("band coverage", estimator).mean()),
         "gain": float((chance - area) / max(chance - best, 1e-12)),
     }
 
@@ -130,7 +107,7 @@ def rejection_curve(errors: Float64Array, uncertainties: Float64Array) -> Float6
     return (np.cumsum(ordered) / np.arange(1, len(errors) + 1))[::-1]
 
 
-def weight_figures(cases: Cases, estimator: str, *, seed: int) -> Figures:
+def weight_correlations(cases: Cases, estimator: str) -> Figures:
     """Return the correlation over bodies of each of the first EMoR weights, true against estimated.
 
     The weights of a body are the means over its photographs; bodies are resampled. With fewer than `LEAST_BODIES`
@@ -139,7 +116,7 @@ def weight_figures(cases: Cases, estimator: str, *, seed: int) -> Figures:
     groups = cases.groups("body key").values()
     if len(groups) < LEAST_BODIES:
         return {}
-    resampling = Resampling.of_bodies(np.arange(len(groups)), seed=seed)
+    resampling = Resampling.from_labels(np.arange(len(groups)), np.zeros(len(groups)))
     rows = cases.rows[estimator]
     true, estimated = (
         np.array([np.mean([rows[number][name] for number in group], axis=0) for group in groups])
@@ -182,4 +159,4 @@ def _correlation(first: Float64Array, second: Float64Array, resampling: Resampli
     if not has_spread[0]:
         return Interval(0.0, 0.0, 0.0)
     correlations = covariance(first, second)[has_spread] / np.sqrt(product[has_spread])
-    return interval(np.clip(correlations, -1, 1))
+    return Interval.from_samples(np.clip(correlations, -1, 1))

@@ -4,8 +4,6 @@ In this package a rendering takes irradiance, float32 (N, H, W, 3), 1 = white an
 pictures, float32 (N, H, W, 3) in [0, 1]; it draws its settings once for all N.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from PIL import Image
 

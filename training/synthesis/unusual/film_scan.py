@@ -1,8 +1,7 @@
 """Scans of negative film: density curves and a base tint for each channel, correlated grain, dust."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -41,7 +40,7 @@ class Negative:
     middle: Float64Array
 
     @classmethod
-    def draw(cls, rng: np.random.Generator) -> Negative:
+    def draw(cls, rng: np.random.Generator) -> Self:
         """Return a random film whose layers differ a little, in contrast and in speed."""
         return cls(
             base=BASE + rng.normal(0, BASE_DEVIATION, 3),

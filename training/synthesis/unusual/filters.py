@@ -1,7 +1,5 @@
 """Pictures of a camera changed beyond recognition: artistic filters, solarization, palettes, false color."""
 
-from __future__ import annotations
-
 import numpy as np
 from PIL import Image
 from scipy.interpolate import PchipInterpolator

@@ -1,7 +1,5 @@
 """Pictures that no camera took: screenshots with a small photograph in them, and flat drawings."""
 
-from __future__ import annotations
-
 import string
 from functools import cache
 
@@ -24,7 +22,13 @@ INSET_SIDES = (0.25, 0.75)
 #: Range of the number of shapes in a drawing of a window's size.
 SHAPES = (6, 24)
 
+#: The side of a window at the size at which drawings are drawn: twice their own.
+DRAWN_SIZE = 2 * WINDOW_SIZE
+
 Color = tuple[int, int, int]
+
+#: Pillow's own font of a size, loaded once.
+_font = cache(ImageFont.load_default)
 
 
 def screenshot(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -83,12 +87,6 @@ def _line(width: int, size: int, rng: np.random.Generator) -> str:
     return " ".join(words)
 
 
-@cache
-def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Return Pillow's own font."""
-    return ImageFont.load_default(size)
-
-
 def line_art(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return drawings of the size of `irradiance`, which they do not show: flat shapes with outlines, and strokes."""
     colors = [_color(rng) for _ in range(rng.integers(2, 9))]
@@ -102,27 +100,32 @@ def _drawing(size: tuple[int, int], colors: list[Color], is_outlined: bool, rng:
     height, width = 2 * size[0], 2 * size[1]
     image = Image.new("RGB", (width, height), (255, 255, 255) if rng.random() < 0.5 else colors[0])
     draw = ImageDraw.Draw(image)
-    scale = 2 * WINDOW_SIZE
-    count = int(rng.integers(*SHAPES) * max(1.0, height * width / scale**2 / 2))
+    count = int(rng.integers(*SHAPES) * max(1.0, height * width / DRAWN_SIZE**2 / 2))
     for _ in range(count):
         color = colors[rng.integers(len(colors))]
         outline = (0, 0, 0) if is_outlined else color
-        center = rng.uniform(0, 1, 2) * (width, height)
-        sides = np.exp(rng.uniform(np.log(0.04), np.log(0.5), 2)) * scale / 2
-        box = (*(center - sides).tolist(), *(center + sides).tolist())
-        match rng.integers(4):
-            case 0:
-                draw.ellipse(box, color, outline, int(rng.integers(2, 7)))
-            case 1:
-                draw.rectangle(box, color, outline, int(rng.integers(2, 7)))
-            case 2:
-                angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 8)))
-                corners = center + sides * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-                draw.polygon([tuple(corner) for corner in corners.tolist()], color, outline, int(rng.integers(2, 7)))
-            case _:
-                path = center + np.cumsum(rng.normal(0, scale / 12, (rng.integers(2, 9), 2)), axis=0)
-                draw.line([tuple(point) for point in path.tolist()], outline, int(rng.integers(2, 12)), "curve")
+        _draw_shape(draw, rng.uniform(0, 1, 2) * (width, height), color, outline, rng)
     return np.asarray(image.resize(size[::-1], Image.Resampling.BOX), np.float32) / np.float32(255)
+
+
+def _draw_shape(
+    draw: ImageDraw.ImageDraw, center: np.ndarray, color: Color, outline: Color, rng: np.random.Generator
+) -> None:
+    """Draw an ellipse, a rectangle, a polygon or a stroke around a center."""
+    sides = np.exp(rng.uniform(np.log(0.04), np.log(0.5), 2)) * DRAWN_SIZE / 2
+    box = (*(center - sides).tolist(), *(center + sides).tolist())
+    match rng.integers(4):
+        case 0:
+            draw.ellipse(box, color, outline, int(rng.integers(2, 7)))
+        case 1:
+            draw.rectangle(box, color, outline, int(rng.integers(2, 7)))
+        case 2:
+            angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 8)))
+            corners = center + sides * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            draw.polygon([tuple(corner) for corner in corners.tolist()], color, outline, int(rng.integers(2, 7)))
+        case _:
+            path = center + np.cumsum(rng.normal(0, DRAWN_SIZE / 12, (rng.integers(2, 9), 2)), axis=0)
+            draw.line([tuple(point) for point in path.tolist()], outline, int(rng.integers(2, 12)), "curve")
 
 
 def _gray(rng: np.random.Generator, is_dark: bool) -> Color:

@@ -1,7 +1,5 @@
 """The kinds of pictures that an estimate must refuse, and how each is made of linear light."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum

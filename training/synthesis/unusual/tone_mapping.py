@@ -1,7 +1,5 @@
 """Tone-mapped pictures of high-dynamic-range light, with local and global operators."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import uniform_filter
 

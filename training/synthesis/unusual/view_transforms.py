@@ -1,7 +1,5 @@
 """Renderings as Blender shows them: the views Filmic and AgX, by formula."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

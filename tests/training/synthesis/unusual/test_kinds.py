@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, unusual_photo, unusual_windows
 

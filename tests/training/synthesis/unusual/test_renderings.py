@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
 from crfnet_core.response.transfer_functions import srgb_encode
 from training.synthesis.unusual.film_scan import Negative
 from training.synthesis.unusual.tone_mapping import drago, guided_base, reinhard

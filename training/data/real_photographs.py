@@ -3,10 +3,7 @@
 No model is trained on the pixels. A prior may be made from the responses, out of fold wherever it is measured.
 """
 
-from __future__ import annotations
-
-import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,8 +11,9 @@ import numpy as np
 
 from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.file_origin import is_original, metadata_of_case
+from training.data.scenes import table_rows
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -49,7 +47,7 @@ class RealPhotograph:
     grade: how well the response was measured: A, B or C
     caution: why the photograph does not count in the means; empty where it counts
     is_in_mean: whether its response is part of the mean of the other bodies
-    fold: bodies of one fold are left out of a mean together
+    fold: bodies of one fold are left out of a mean together; its name is of one folder only
     photograph, measured: the files of the photograph and of its response
     metadata: of the original file, where `photograph` is not the original and has lost it
     """
@@ -85,10 +83,10 @@ def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
 
     DATA/real_bodies may be absent; its list says which bodies share a fold. In DATA/real each body is its own fold.
     """
-    sets = {REAL: [_of_real(data / REAL, row) for row in case_rows(data / REAL)]}
+    sets = {REAL: [_of_real(data / REAL, row) for row in table_rows(data / REAL / "cases.csv")]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in table_rows(folder / "cases.csv")]
     return sets
 
 
@@ -101,13 +99,13 @@ class Body:
     responses: tuple[ResponseCurve, ...]
 
 
-def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
+def measured_bodies(data: Path, *, without: str | None = None) -> list[Body]:
     """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
 
-    The fold of the photograph `without` is left out, and every body of the models in this fold, in both folders.
+    The fold `without` is left out, and every body of the models in this fold, in both folders.
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
-    left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}
+    left_out = {model_key(photograph) for photograph in photographs if photograph.fold == without}
     kept = [
         photograph
         for photograph in photographs
@@ -124,12 +122,6 @@ def model_key(photograph: RealPhotograph) -> str:
 def read_measured(path: Path) -> ResponseCurve:
     """Return a measured response: a file of irradiance and response."""
     return ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1])
-
-
-def case_rows(folder: Path) -> list[dict[str, str]]:
-    """Return the rows of a folder's cases.csv."""
-    with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
@@ -159,18 +151,45 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         body=row["body"],
         kind=row["kind"],
         grade=row["grade"],
-        caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
+        caution=caution(row),
         is_in_mean=row["use"] == USED,
-        fold=row["fold"],
+        fold=f"fold {row['fold']}",
         photograph=folder / row["file"],
         measured=folder / row["gt"],
         metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
     )
 
 
-def _shares_fold(photograph: RealPhotograph, other: RealPhotograph) -> bool:
-    """Return whether two photographs are of one folder and one fold."""
-    return photograph.photograph.parents[1] == other.photograph.parents[1] and photograph.fold == other.fold
+def caution(row: Mapping[str, str]) -> str:
+    """Return why the photograph of a row of DATA/real_bodies/cases.csv does not count; empty where it counts."""
+    return "" if row["use"] == USED else row["use"].removeprefix(CAUTION)
+
+
+def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
+    """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
+
+    The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
+    quantization tables. The size in EXIF, the profile and the XMP history are lost, except where the photograph is the
+    original byte for byte (`is_original`): `read_photo` finds them.
+    """
+    jpeg = read_jpeg_header(crop)
+    width, height = (int(side) for side in row["original_size"].split("x"))
+    return FileMetadata(
+        width=width,
+        height=height,
+        make=row["exif_make"].strip(),
+        model=row["exif_model"].strip(),
+        software=row["exif_software"].strip(),
+        iso=round(float(row["iso"])) if row["iso"] else None,
+        luma_table=jpeg.luma_table,
+        chroma_table=jpeg.chroma_table,
+        file_format="JPEG",
+    )
+
+
+def is_original(row: Mapping[str, str]) -> bool:
+    """Return whether the photograph of a row is the original file: the larger ones are WebP."""
+    return not row["file"].endswith(".webp")
 
 
 def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:

@@ -3,13 +3,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy.io", reason="training needs the train extra")
-
-from crfnet_core.photograph.metadata import FileMetadata
-from training.data.real import photographs as module
-from training.data.real.photographs import RealPhotograph, measured_bodies
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
+from tests.helpers.crafted_files import jpeg
+from training.data import real_photographs as module
+from training.data.real_photographs import RealPhotograph, measured_bodies, metadata_of_case
 
 UNIFORM = np.linspace(0, 1, 1024)
+
+ROW = {
+    "exif_make": "NIKON CORPORATION",
+    "exif_model": "NIKON D90",
+    "exif_software": "Ver.1.00 ",
+    "iso": "400.0",
+    "original_size": "2144x1424",
+    "file": "photos/nikon_d90_1a.webp",
+}
 
 
 def photograph(folder, name, body, fold, *, stack="1", kind="camera", raw_file=""):
@@ -57,9 +66,8 @@ def test_a_body_has_one_response_for_each_stack(photographs):
 
 def test_a_fold_is_left_out_with_all_bodies_of_its_models(photographs):
     """The camera of the fold is in the other folder too, once as another body."""
-    first = photographs["real_bodies"][0]
-    assert keys(without=first) == ["canon s45", "pixel 4"]
-    assert keys(without=photographs["real"][1]) == ["canon s45", "pixel 3", "pixel 4"]
+    assert keys(without="0") == ["canon s45", "pixel 4"]
+    assert keys(without="Nikon D90 (second body)") == ["canon s45", "pixel 3", "pixel 4"]
 
 
 def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_path):
@@ -67,3 +75,23 @@ def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_
     photographs["real"].append(photograph(tmp_path / "real", "r5", "Nikon D700", "Nikon D700", raw_file="1.jpg"))
     assert "nikon d700" in keys()
     assert "nikon d800" not in keys()
+
+
+def test_the_list_keeps_the_metadata_of_the_original_file():
+    metadata = metadata_of_case(ROW)
+    assert (metadata.make, metadata.model, metadata.software) == ("NIKON CORPORATION", "NIKON D90", "Ver.1.00")
+    assert (metadata.width, metadata.height, metadata.iso) == (2144, 1424, 400)
+    assert file_origin(metadata).device == "camera"
+
+
+def test_the_crop_has_the_tables_of_the_original_file(tmp_path):
+    crop = jpeg(tmp_path / "a.jpg", Compression="jpeg:90")
+    metadata = metadata_of_case(ROW, crop)
+    assert metadata.luma_table == read_jpeg_header(crop).luma_table
+    assert not metadata.has_jfif
+
+
+def test_fields_of_the_list_may_be_empty():
+    metadata = metadata_of_case(ROW | {"exif_make": "", "exif_model": "", "exif_software": "", "iso": ""})
+    assert not metadata.has_camera
+    assert metadata.iso is None

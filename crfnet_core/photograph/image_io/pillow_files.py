@@ -1,6 +1,6 @@
-"""Read HEIC and AVIF, for which OpenImageIO's wheel has no reader.
+"""Read HEIC and AVIF, for which OpenImageIO's wheel has no reader, and BMP, of which it ignores the channels' masks.
 
-HEIC is decoded by pi-heif, and AVIF of 8 bits by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is
+HEIC is decoded by pi-heif, BMP and AVIF of 8 bits by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is
 decoded by PyAV, which is an optional dependency.
 """
 
@@ -18,23 +18,26 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 from PIL.AvifImagePlugin import AvifImageFile
+from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size, with_segments
+from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, damaged, with_segments
+from crfnet_core.photograph.image_io.heif_items import decoded_pixels, meta_box
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
-from crfnet_core.photograph.photo import CodeArray, CodeValues
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeValues, upright
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
-#: Errors of the decoders for damaged files.
+#: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
-#: Bytes at the start of a file in which the boxes `ftyp` and `meta` are looked for (ISO/IEC 14496-12).
-_HEAD_BYTES = 1 << 20
+#: Most pixels that are decoded for the main picture: of its tiles, and of the picture that they make.
+MOST_DECODED = 4 * MAX_PIXELS
 
 #: Marks of a gain map: Apple's auxiliary picture, and the item and brand of ISO 21496-1.
 _GAIN_MAPS = (b"urn:com:apple:photo:2020:aux:hdrgainmap", b"tmap")
+
+#: Where a BMP file of version 5 has the place and size of its profile, and the type of color space of an embedded one.
+_BMP_PROFILE_AT, _BMP_EMBEDDED = 126, b"DEBM"
 
 #: The fields of CICP, as pi-heif names them.
 _CICP = ("color_primaries", "transfer_characteristics", "matrix_coefficients", "full_range_flag")
@@ -51,41 +54,48 @@ class _Picture:
     is_upright: bool = True  # else EXIF turns it
 
 
-def read_heif(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of the main picture of a HEIC or AVIF file, turned upright as the file says.
+def read_pillow_file(path: Path, kind: str) -> CodeValues:
+    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, upright, as RGB in full range.
 
-    Limited range is expanded, and YCbCr turned into RGB by the file's own matrix; the primaries stay as they are. The
-    header has the names that OpenImageIO gives to the EXIF, XMP and ICC profile of a JPEG, and `CICP`, four integers.
-    Raise PhotoError if the file is damaged or too large, or the library that decodes it is not installed.
+    The header has the names that OpenImageIO gives to a JPEG's, and `CICP`, four integers. Raises as `read_photo`.
     """
-    boxes = _boxes(path)
-    if not _has_named_items(boxes):
-        raise problems.damaged(path, kind, "the type of an item is not text")
+    boxes, main = b"", None
     try:
-        import pi_heif
-
-        main = None
-        with suppress(*_DAMAGE if kind == "AVIF" else ()):  # Pillow also reads AVIF that pi-heif does not
-            main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
-            check_size(path, *main.size)
-        info = main.info if main else {}
-        picture = _heic(main) if kind == "HEIC" else _avif(path, main)
+        if kind != "BMP":
+            boxes = _boxes(path)
+            main = _opened_heif(path, kind, boxes)
+        picture = _heic(main) if kind == "HEIC" else _avif(path, main) if kind == "AVIF" else _bmp(path)
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
-        raise problems.damaged(path, kind, str(problem)) from None
-    nclx = info.get("nclx_profile")
+        raise damaged(path, kind, str(problem)) from None
+    nclx = main.info.get("nclx_profile") if main else None
     cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
     return _code_values(picture, kind, cicp, has_gain_map=any(mark in boxes for mark in _GAIN_MAPS))
 
 
+def _opened_heif(path: Path, kind: str, boxes: bytes) -> Any:
+    """Return the main picture by pi-heif, not yet decoded; None for AVIF that it does not read, but Pillow may."""
+    import pi_heif
+
+    if not _has_named_items(boxes):
+        raise ValueError("the type of an item is not text")
+    with suppress(*_DAMAGE if kind == "AVIF" else ()):
+        main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
+        check_size(path, *main.size)
+        return main
+    return None
+
+
 def _boxes(path: Path) -> bytes:
-    """Return the boxes `ftyp` and `meta`; where the second is not found, the first alone."""
-    with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
-    files = head[: int.from_bytes(head[:4])]
-    start = max(0, head.find(b"meta", len(files)) - 4)
-    return files + (head[start : start + int.from_bytes(head[start : start + 4])] if start else b"")
+    """Return the content of the box `meta`; raise PhotoError if its items would be decoded again and again."""
+    try:
+        boxes = meta_box(path)
+        if decoded_pixels(boxes) > MOST_DECODED:
+            raise ValueError("its tiles have many more pixels than the picture")
+    except (IndexError, ValueError) as problem:
+        raise damaged(path, "HEIF", str(problem)) from None
+    return boxes
 
 
 def _has_named_items(boxes: bytes) -> bool:
@@ -110,15 +120,9 @@ def _heic(main: Any) -> _Picture:
 
 
 def _avif(path: Path, main: Any) -> _Picture:
-    """Return the picture of an AVIF file as stored; Pillow puts its boxes `irot` and `imir` into EXIF.
-
-    Of `main`, by pi-heif, which is None for some files, the pixels are not used. Neither Pillow nor PyAV crops.
-    """
+    """Return the picture of an AVIF file as stored, by Pillow, which puts the boxes `irot` and `imir` into EXIF."""
     bit_depth = main.info["bit_depth"] if main else 8
-    with (
-        warnings.catch_warnings(action="ignore"),
-        AvifImageFile(path) as image,
-    ):  # not Image.open, which refuses 200 megapixels
+    with warnings.catch_warnings(action="ignore"), AvifImageFile(path) as image:
         check_size(path, *image.size)
         info = dict(image.info)
         if main and sorted(main.size) != sorted(image.size):
@@ -129,11 +133,23 @@ def _avif(path: Path, main: Any) -> _Picture:
     return _Picture(np.atleast_3d(samples), max(8, bit_depth), info, is_upright=False)
 
 
-def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
-    """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
+def _bmp(path: Path) -> _Picture:
+    """Return the picture of a BMP file; refuse a palette other than of all grays, and less than 8 bits."""
+    with BmpImageFile(path) as image, path.open("rb") as file:
+        check_size(path, *image.size)
+        if image.mode in ("1", "P"):
+            raise PhotoError("palette", path=path, kind="a BMP file with a palette")
+        if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
+            raise PhotoError("sample_type", path=path, bits=5, kind="uint8")
+        head = file.read(_BMP_PROFILE_AT + 8)
+        offset, size = (int.from_bytes(head[at : at + 4], "little") for at in (_BMP_PROFILE_AT, _BMP_PROFILE_AT + 4))
+        file.seek(14 + offset)
+        profile = file.read(min(size, 1 << 24)) if head[70:74] == _BMP_EMBEDDED else b""
+        return _Picture(np.atleast_3d(np.asarray(image)), 8, {"icc_profile": profile})
 
-    Matrix and range come from the file's box, which FFmpeg puts into the stream; a frame has them from its header.
-    """
+
+def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
+    """Return the RGB codes of deep AVIF as stored, (H, W, 3), by PyAV; the box's matrix and range come first."""
     try:
         import av
     except ImportError:

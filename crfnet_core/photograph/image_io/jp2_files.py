@@ -1,0 +1,59 @@
+"""JPEG 2000: refuse codings that OpenImageIO returns as other pixels, and find associated alpha.
+
+Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2).
+"""
+
+from __future__ import annotations
+
+import mmap
+from collections.abc import Iterator
+from pathlib import Path
+
+from crfnet_core.errors import PhotoError
+
+#: Start of the codestream and of its marker SIZ; the start of the box of headers in a JP2 file.
+_SIZE_MARKER, _HEADERS = b"\xff\x4f\xff\x51", b"jp2h"
+
+#: Method of a color box that names a space by number; the spaces that are read: sRGB, gray, sYCC; CMYK.
+_BY_NUMBER, _READ_SPACES, _CMYK = 1, (16, 17, 18), 12
+
+#: Type of a channel by which the colors are multiplied.
+_PREMULTIPLIED = 2
+
+
+def is_premultiplied(path: Path) -> bool:
+    """Return whether colors are multiplied by alpha; raise PhotoError where OpenImageIO returns other pixels."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        start = content.find(_SIZE_MARKER)
+        _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
+        at = content.find(_HEADERS, 0, start) if start > 0 else -1
+        size = int.from_bytes(content[max(at - 4, 0) : max(at, 0)])
+        boxes = dict(reversed([*_boxes(content[at + 4 : at - 4 + size])]))  # of several of one name the first counts
+    if b"pclr" in boxes:
+        raise PhotoError("palette", path=path, kind="a JPEG 2000 file with a palette")
+    color = boxes.get(b"colr", b"")
+    space = int.from_bytes(color[3:7])
+    if color[:1] == bytes([_BY_NUMBER]) and space not in _READ_SPACES:
+        kind = "CMYK" if space == _CMYK else f"JPEG 2000 color space {space}"
+        raise PhotoError("other_colors", path=path, kind=kind)
+    channels = boxes.get(b"cdef", b"")[2:]
+    return any(int.from_bytes(channels[at + 2 : at + 4]) == _PREMULTIPLIED for at in range(0, len(channels), 6))
+
+
+def _check_size(path: Path, size: bytes) -> None:
+    """Refuse signed samples, and components of fewer samples that do not fill the picture, by the content of SIZ."""
+    right, bottom, left, top = (int.from_bytes(size[at : at + 4]) for at in (0, 4, 8, 12))
+    count = int.from_bytes(size[32:34])
+    for depth, across, down in (size[at : at + 3] for at in range(34, min(34 + 3 * count, len(size) - 2), 3)):
+        if depth & 0x80:
+            raise PhotoError("coding_not_read", path=path, kind="JPEG 2000", problem="signed samples")
+        if (right - left) % max(across, 1) or (bottom - top) % max(down, 1):
+            raise PhotoError("coding_not_read", path=path, kind="JPEG 2000", problem="subsampled, and of odd size")
+
+
+def _boxes(content: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the name and the content of each box in a box."""
+    at = 0
+    while size := int.from_bytes(content[at : at + 4]):
+        yield content[at + 4 : at + 8], content[at + 8 : at + size]
+        at += max(size, 8)

@@ -1,0 +1,80 @@
+import io
+import struct
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.image_io import read_codes, read_metadata
+from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.images import write_image
+
+ALPHA = np.full((48, 64, 1), 128, np.uint8)
+
+
+def box(name, content):
+    return struct.pack(">I4s", 8 + len(content), name) + content
+
+
+#: A palette of black alone, and the three channels that it makes of the first component.
+PALETTE = box(b"pclr", struct.pack(">HB3B", 256, 3, 7, 7, 7) + bytes(768))
+PALETTE += box(b"cmap", b"".join(struct.pack(">HBB", 0, 1, column) for column in range(3)))
+
+
+def jp2(path, codes, boxes=b"", space=16, components=None):
+    """Write JPEG 2000 with more boxes in its header, another color space and other components in its marker SIZ."""
+    file = io.BytesIO()
+    Image.fromarray(codes).save(file, "JPEG2000", no_jp2=True)
+    stream = bytearray(file.getvalue())
+    for at, values in enumerate(components or ()):
+        stream[42 + 3 * at : 45 + 3 * at] = bytes(values)
+    height, width, channels = codes.shape
+    header = box(b"ihdr", struct.pack(">IIH4B", height, width, channels, 7, 7, 0, 0))
+    header += box(b"colr", b"\1\0\0" + struct.pack(">I", space)) + boxes
+    start = box(b"jP  ", b"\r\n\x87\n") + box(b"ftyp", b"jp2 \0\0\0\0jp2 ")
+    path.write_bytes(start + box(b"jp2h", header) + box(b"jp2c", bytes(stream)))
+    return path
+
+
+def channels(*entries):
+    return box(b"cdef", struct.pack(">H", len(entries)) + b"".join(struct.pack(">3H", *each) for each in entries))
+
+
+@pytest.mark.parametrize(("kind", "is_associated"), [(1, False), (2, True)])
+def test_alpha_is_associated_if_the_file_says_so(tmp_path, kind, is_associated):
+    codes = colored_ramp(8) // 2
+    definition = channels((0, 0, 1), (1, 0, 2), (2, 0, 3), (3, kind, 0))
+    values = read_codes(jp2(tmp_path / "a.jp2", np.dstack([codes, ALPHA]), definition))
+    assert values.is_associated == is_associated
+    np.testing.assert_allclose(values.pixels(), codes / (128 if is_associated else 255), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        *(({"space": space}, "other_colors") for space in (12, 14)),
+        ({"boxes": PALETTE}, "palette"),
+        ({"components": [(0x87, 1, 1)]}, "coding_not_read"),
+        ({"components": [(7, 1, 1), (7, 2, 2), (7, 2, 2)]}, "coding_not_read"),
+    ],
+)
+def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments, code):
+    path = jp2(tmp_path / "a.jp2", colored_ramp(8)[:47], **arguments)
+    for read in (read_codes, read_metadata):
+        with pytest.raises(PhotoError) as caught:
+            read(path)
+        assert caught.value.code == code
+
+
+@pytest.mark.parametrize("alpha", [255, 128])
+def test_jpeg_xl_whose_colors_may_be_multiplied_by_alpha_is_refused(tmp_path, alpha):
+    """OpenImageIO drops the bit that says so, but no such color is above alpha."""
+    codes = np.dstack([colored_ramp(8) // 2, np.full_like(ALPHA, alpha)])
+    path = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100")
+    if alpha == 255:
+        assert not read_codes(path).is_associated
+        return
+    with pytest.raises(PhotoError) as caught:
+        read_codes(path)
+    assert caught.value.code == "coding_not_read"
