@@ -27,7 +27,7 @@ def end_comparisons(*_arguments: Any) -> None:
 
 @bpy.app.handlers.persistent
 def rename_color_spaces(*_arguments: Any) -> None:
-    """Give the color spaces of a file that may have been made under another config the names of the present one."""
+    """Name the color spaces of a file, which may have been made under another config, as the present one does."""
     if node_links.has_groups():
         try:
             lazy_import.load(".scene.color_space_names").rename_color_spaces()
@@ -37,10 +37,7 @@ def rename_color_spaces(*_arguments: Any) -> None:
 
 @bpy.app.handlers.persistent
 def check_opened_file(*_arguments: Any) -> None:
-    """Name color spaces as the present config does, and note that the code values are from the present files.
-
-    Blender has just read these.
-    """
+    """Check color spaces, and note that the code values are from the present files, which Blender has just read."""
     comparison.end_all()
     rename_color_spaces()
     code_values.note_files_as_read()
