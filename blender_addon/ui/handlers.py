@@ -14,7 +14,8 @@ from typing import Any
 import bpy
 
 from .. import lazy_import
-from ..scene import code_values, node_links
+from ..scene import code_values
+from ..scene.nodes import links
 from ..work.errors import expected_errors
 from .image_editor import comparison
 
@@ -28,7 +29,7 @@ def end_comparisons(*_arguments: Any) -> None:
 @bpy.app.handlers.persistent
 def rename_color_spaces(*_arguments: Any) -> None:
     """Name the color spaces of a file, which may have been made under another config, as the present one does."""
-    if node_links.has_groups():
+    if links.has_groups():
         try:
             lazy_import.load(".scene.color_space_names").rename_color_spaces()
         except expected_errors() as problem:

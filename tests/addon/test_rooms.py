@@ -61,7 +61,7 @@ def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):
         assert "bpy" not in {name.partition(".")[0] for name in names}, path
 
 
-@pytest.mark.parametrize("room", ["ui", "ui/image_editor", "ui/more", "scene", "work"])
+@pytest.mark.parametrize("room", ["ui", "ui/image_editor", "ui/more", "scene", "scene/nodes", "work"])
 def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     modules = {path.stem for path in (addon_folder / room).glob("*.py")} - {"__init__"}
     modules |= {path.parent.name for path in (addon_folder / room).glob("*/__init__.py")}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The inverse response as a compositor node group of RGB Curves nodes: see `curve_nodes`.
+"""The inverse response as a compositor node group of RGB Curves nodes: see `curves`.
 
-Plates of 8 bits need one, with a step at every code; deeper ones, as many as `curve_nodes.TOLERANCE` takes. Values are
+Plates of 8 bits need one, with a step at every code; deeper ones, as many as `curves.TOLERANCE` takes. Values are
 clipped to [0, 1], as where files are baked.
 """
 
@@ -16,13 +16,13 @@ from crfnet.errors import ConfigError
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
 
-from . import stored_estimate
-from .code_values import alpha_in_compositor, is_deep
-from .color_management import color_spaces, data_space, running_config
-from .curve_nodes import EIGHT_BITS, Part, add_curves, deep_parts
-from .node_building import CHANNELS, NodeGrid, Socket
-from .node_links import PLATE
-from .plates import Datablock, mark, short_hash
+from .. import stored_estimate
+from ..code_values import alpha_in_compositor, is_deep
+from ..color_management import color_spaces, data_space, running_config
+from ..plates import Datablock, mark, short_hash
+from .building import CHANNELS, NodeGrid, Socket
+from .curves import EIGHT_BITS, Part, add_curves, deep_parts
+from .links import PLATE
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:

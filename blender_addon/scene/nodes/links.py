@@ -8,7 +8,7 @@ from enum import Enum
 
 import bpy
 
-from .plates import Datablock, datablock_of_node, shown_by_node
+from ..plates import Datablock, datablock_of_node, shown_by_node
 
 #: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import bpy
 import numpy as np
 
-from .node_building import NodeGrid, Socket
+from .building import NodeGrid, Socket
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-from .node_building import GAP, IS_BLENDER_5, Socket
-from .node_links import LOOK, linearizes, output_of
+from .building import GAP, IS_BLENDER_5, Socket
+from .links import LOOK, linearizes, output_of
 
 #: Nodes that hand the render on as it is.
 _PASSING = ("R_LAYERS", "REROUTE")
