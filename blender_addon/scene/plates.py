@@ -145,6 +145,8 @@ def obstacle(datablock: Datablock) -> str:
         return "These are the code values of a plate, not the plate: open the photograph itself"
     if BAKED_FROM in datablock:
         return f"This is the linear plate of {datablock[BAKED_FROM]}, which has no camera response any more"
+    if getattr(datablock, "use_multiview", False):  # which clips do not have
+        return "This image holds views for two eyes: open the picture of one eye, and untick Use Multi-View"
     if datablock.filepath.lower().endswith(".gif"):
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
