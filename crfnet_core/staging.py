@@ -4,8 +4,6 @@ The files are written in a temporary folder next to their places, which only the
 the disk before their names are. The folder holds a locked file, so others can see whether its process still lives.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import shutil

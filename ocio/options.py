@@ -1,7 +1,5 @@
 """The options of the pipeline: plain, frozen, and the same for the command and for the add-on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Read camera raw with rawpy (LibRaw): the light of the sensor as it is stored, and the camera's own JPEG in it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

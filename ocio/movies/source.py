@@ -1,7 +1,5 @@
 """The sources of plates, the frames of a movie or image files; and the frames from which a response is estimated."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 

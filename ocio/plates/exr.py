@@ -1,7 +1,5 @@
 """The OpenEXR file of a linear plate: its header and its pixels."""
 
-from __future__ import annotations
-
 import mmap
 import re
 import struct

@@ -1,7 +1,5 @@
 """Read one frame of a plate: its encoded samples, its alpha and its header; or its color tags alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace

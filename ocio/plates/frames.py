@@ -1,7 +1,5 @@
 """The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

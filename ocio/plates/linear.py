@@ -1,7 +1,5 @@
 """Linearize plates: encoded files and frame sequences to scene-linear OpenEXR."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait

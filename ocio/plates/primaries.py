@@ -1,7 +1,5 @@
 """The primaries of an encoded plate, by its tags, as stated or by convention; and the space of its linear values."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Recognize a file's format by its first bytes, and refuse formats that hold no encoded photograph."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import BinaryIO, Literal
 

@@ -1,7 +1,5 @@
 """Check the header of an image file (size, depth, colors), clean its texts, add other segments; errors of decoders."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The items of a HEIF file (ISO/IEC 14496-12, 23008-12), and how often they are decoded: 80 KB can ask for 60 GP."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """JPEG files: checks before decoding, harmless warnings, and the standard image of a file with a gain map."""
 
-from __future__ import annotations
-
 import mmap
 import re
 from collections.abc import Iterator

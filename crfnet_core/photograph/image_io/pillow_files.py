@@ -4,8 +4,6 @@ HEIC is decoded by pi-heif, BMP and AVIF of 8 bits by Pillow. Both stop at 8 bit
 decoded by PyAV, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
 """
 
-from __future__ import annotations
-
 import struct
 import zlib
 from contextlib import suppress

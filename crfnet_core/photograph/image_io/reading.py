@@ -1,7 +1,5 @@
 """Read a photograph's code values, upright and otherwise as stored; or its metadata alone."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Iterator

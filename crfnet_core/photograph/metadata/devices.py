@@ -4,8 +4,6 @@ Makers of one kind are known by name; of the others the first pattern that fits 
 cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
 """
 
-from __future__ import annotations
-
 import re
 from enum import StrEnum
 

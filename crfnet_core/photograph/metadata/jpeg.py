@@ -1,7 +1,5 @@
 """The metadata in the segments of a JPEG file, and the quantization tables of the IJG library (libjpeg)."""
 
-from __future__ import annotations
-
 import io
 import mmap
 import struct

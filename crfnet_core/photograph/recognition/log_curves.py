@@ -4,8 +4,6 @@ Reflectance is scene-linear light of which 0.18 is a middle gray and 0.9 a white
 values are fractions of the largest code, as the file stores them: black lies well above 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

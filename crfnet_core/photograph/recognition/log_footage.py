@@ -1,7 +1,5 @@
 """Log footage by its levels: how much more likely they make it, and which published curve lies nearest."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
