@@ -149,7 +149,7 @@ def _measured(
     if not others:
         return first, measurement, None
     other = others[0]
-    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], model, measurement.curve)
+    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], model, measurement.fit.weights)
     if measurement.fit.cost - first.bonus <= again.fit.cost - other.bonus:
         return first, measurement, again.curve
     return other, replace(again, frames=measurement.frames, outliers=measurement.outliers), measurement.curve

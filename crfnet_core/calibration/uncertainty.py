@@ -73,7 +73,7 @@ def _curve_of(
     """Return the response of a part of the samples, or of all if the part is too small."""
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
-    return fit_and_anchor(seen, exposures, model, measurement.curve, rounds=1).curve
+    return fit_and_anchor(seen, exposures, model, measurement.fit.weights, rounds=1).curve
 
 
 def _channel_curve(measurement: Measurement, channel: int, model: CurveModel) -> ResponseCurve:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
 from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
-from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs, in_camera_mean
+from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
 from crfnet_core.calibration.uncertainty import posterior_deviation
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
