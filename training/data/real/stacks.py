@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration import PairCalibration
 from crfnet_core.library import Camera, CameraSettings
 from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.response.curve import ResponseCurve
@@ -30,6 +31,9 @@ SHAPE_STOPS = 0.05
 
 #: Decimals of the responses: their least step is 1e-7.
 DECIMALS = 8
+
+#: Grade -> the largest standard deviation of the E_est of the stacks that have it.
+GRADES = {"A": 0.6, "B": 1.1}
 
 #: How the names of bodies begin whose make and model nobody knows.
 UNKNOWN_BODY = "unknown"
@@ -91,13 +95,40 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
     return Camera(
         name=name,
-        curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
+        curve=_smoothed(first.curve),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
         source=f"{frames} (grade {first.grade}{best})",
         settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
         warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
     )
+
+
+def raw_camera(found: PairCalibration) -> Camera:
+    """Return the camera that was measured from raw files and their JPEGs, smoothed and graded as stacks are."""
+    settings = replace(CameraSettings.from_metadata(found.metadata), iso=_sensitivities(found))
+    shape, scale = found.uncertainty.shape_stops, found.uncertainty.scale_stops
+    error = float(np.linalg.norm(brightness_per_stop(found.curve) * np.hypot(shape, scale)))
+    grade = next((name for name, most in GRADES.items() if error <= most), "C")
+    return Camera(
+        name=settings.camera,
+        curve=_smoothed(found.curve),
+        shape_stops=round(shape, 3),
+        scale_stops=round(scale, 3),
+        source=f"{len(found.shots)} raw files (grade {grade}, white by {found.white_basis})",
+        settings=settings,
+        warnings=tuple(map(str, found.warnings)),
+    )
+
+
+def _sensitivities(found: PairCalibration) -> tuple[int, ...]:
+    """Return the sensitivities of the shots, sorted."""
+    return tuple(sorted({shot.iso for shot in found.shots if shot.iso}))
+
+
+def _smoothed(curve: ResponseCurve) -> ResponseCurve:
+    """Return a measured response without the steps within a code, which would give bands to a plate."""
+    return ResponseCurve(response_of(log_irradiance(curve)).round(DECIMALS))
 
 
 def _is_taken(row: Mapping[str, str]) -> bool:
