@@ -49,7 +49,7 @@ class Measurement:
         return float(255 * np.sqrt(np.nanmean(self.fit.residual**2)))
 
 
-def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> Measurement:
+def measure(every: Observations, exposures: Float64Array) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
 
     `exposures` are the labels in stops, shape (T,).
@@ -57,11 +57,11 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
     Raise CalibrationError if too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans
     too few stops.
     """
-    frames = np.ones(len(exposures), dtype=bool)
+    frames, start = np.ones(len(exposures), dtype=bool), CurveModel.load().center
     while True:
         within, stops = every.in_frames(frames), exposures[frames]
-        seen = pick_blocks(within, rough_irradiance(within, stops, model, model.center))
-        measurement = fit_and_anchor(seen, stops, model, model.center)
+        seen = pick_blocks(within, rough_irradiance(within, stops, start))
+        measurement = fit_and_anchor(seen, stops, start)
         worst = _worst_frame(measurement.fit)
         if worst is None or frames.sum() < LEAST_FRAMES:
             break
@@ -69,12 +69,12 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
         _check_rest(exposures[frames], len(frames))
     is_outlier = _outliers(seen, measurement.fit)
     if is_outlier.any() and not is_outlier.all():
-        measurement = fit_and_anchor(seen.subset(~is_outlier), stops, model, measurement.fit.weights)
+        measurement = fit_and_anchor(seen.subset(~is_outlier), stops, measurement.fit.weights)
     return replace(measurement, frames=frames, outliers=float(is_outlier.mean()))
 
 
 def fit_and_anchor(
-    seen: Observations, exposures: Float64Array, model: CurveModel, start: Float64Array, *, rounds: int = ROUNDS
+    seen: Observations, exposures: Float64Array, start: Float64Array, *, rounds: int = ROUNDS
 ) -> Measurement:
     """Return the response of some samples in all their frames, beginning at the weights of a response that is near.
 
@@ -82,10 +82,10 @@ def fit_and_anchor(
     """
     found = []
     for _ in range(rounds):
-        fit = fit_stack(seen, exposures, model, start)
-        anchor = find_white(seen, exposures, model, fit)
-        curve = model.response(fit.weights, log_white=anchor.log_white)
-        start = model.weights_of(curve)
+        fit = fit_stack(seen, exposures, start)
+        anchor = find_white(seen, exposures, fit)
+        curve = fit.response(log_white=anchor.log_white)
+        start = CurveModel.load().weights_of(curve)
         found.append(Measurement(seen, exposures, np.ones(len(exposures), dtype=bool), fit, anchor, curve, 0.0))
     return min(found, key=lambda measurement: measurement.fit.cost)
 

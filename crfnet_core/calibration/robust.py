@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 
 import numpy as np
 
 from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import BoolArray, Float64Array
 
 #: Factor by which every observation is down-weighted, because errors of neighboring ones are correlated.
@@ -21,6 +23,34 @@ WHITE_BRIGHTNESS = 1 - 0.5 / 255
 #: Steps at most, and the relative change of the cost that ends them.
 MOST_STEPS, ENOUGH = 40, 2e-4
 
+#: Draws from the posterior of the weights, and their seed.
+DRAWS, SEED = 64, 0
+
+
+@dataclass(frozen=True, eq=False)
+class FittedResponse:
+    """A fitted response of `CurveModel`."""
+
+    weights: Float64Array  # (K,)
+    covariance: Float64Array  # (K, K): their posterior covariance
+
+    def response(self, *, log_white: float = 0.0) -> ResponseCurve:
+        """Return the response; `log_white` is log2 of the irradiance of white in the units of the fit."""
+        return CurveModel.load().response(self.weights, log_white=log_white)
+
+    def log_inverse(self, brightness: Float64Array) -> Float64Array:
+        """Return log2 of the irradiance that makes `brightness`."""
+        return CurveModel.load().log_irradiance(self.weights, brightness)
+
+    def deviations(self, codes: Float64Array) -> tuple[float, float]:
+        """Return the posterior standard deviations of shape and scale at some codes in 0 to 1, in stops."""
+        rng = np.random.default_rng(SEED)
+        drawn = rng.multivariate_normal(self.weights, self.covariance, size=DRAWS, method="eigh")
+        stops = np.stack([CurveModel.load().log_irradiance(weights, codes) for weights in drawn])
+        off = stops - stops.mean(axis=0)
+        scales = off.mean(axis=1)
+        return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
+
 
 class ResponseProblem(ABC):
     """Least squares for a response and the light of N observations.
@@ -29,10 +59,9 @@ class ResponseProblem(ABC):
     observation that is white costs only where the response is below white, one of infinite deviation nothing.
     """
 
-    def __init__(
-        self, model: CurveModel, brightness: Float64Array, deviation: Float64Array, is_white: BoolArray
-    ) -> None:
-        self.model, self.size = model, len(model.center)
+    def __init__(self, brightness: Float64Array, deviation: Float64Array, is_white: BoolArray) -> None:
+        self.model = CurveModel.load()
+        self.size = len(self.model.center)
         self.brightness, self.deviation, self.is_white = brightness, deviation, is_white
         self.starts = np.zeros(0, np.intp)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, CurveModel
-from crfnet_core.calibration.robust import ResponseProblem, huber_cost, huber_weight
+from crfnet_core.calibration.robust import FittedResponse, ResponseProblem, huber_cost, huber_weight
 from crfnet_core.types import Float64Array
 
 #: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around
@@ -24,14 +24,12 @@ MOST_STEPS, LAST_STEP = 12, 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class StackFit:
+class StackFit(FittedResponse):
     """The response, exposures and irradiances that explain a stack."""
 
-    weights: Float64Array  # (K,): of the response: see `CurveModel`
     offsets: Float64Array  # (T, C): stops by which each frame is brighter than its label, in each channel
     #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; white is 0.
     log_irradiance: Float64Array
-    covariance: Float64Array  # (K, K): posterior covariance of the weights
     residual: Float64Array  # (M, T): brightness less the model's; NaN where nothing was seen
     cost: float  # Eq. C.2
 
@@ -40,12 +38,12 @@ class StackFit:
         return self.log_irradiance[:, None] + exposures + self.offsets.T[seen.channel]
 
 
-def fit_stack(seen: Observations, exposures: Float64Array, model: CurveModel, weights: Float64Array) -> StackFit:
+def fit_stack(seen: Observations, exposures: Float64Array, weights: Float64Array) -> StackFit:
     """Return the most likely response, exposures and irradiances, beginning at the weights of a response, (K,).
 
     Source: the model of Mann and Picard (1995) and of Debevec and Malik (1997), with the response as a forward model.
     """
-    problem = _StackProblem(seen, exposures, model, weights)
+    problem = _StackProblem(seen, exposures, weights)
     state = problem.solved(np.append(weights, np.zeros(problem.offsets.shape[-1])))
     offsets, irradiance = problem.offsets @ state[problem.size :], problem.irradiance(state)
     log_light = irradiance[:, None] + exposures + offsets.T[seen.channel]
@@ -55,19 +53,18 @@ def fit_stack(seen: Observations, exposures: Float64Array, model: CurveModel, we
         log_irradiance=irradiance,
         covariance=problem.covariance(state),
         residual=np.where(
-            seen.is_used, seen.brightness - model.brightness(state[: problem.size], log_light)[0], np.nan
+            seen.is_used, seen.brightness - problem.model.brightness(state[: problem.size], log_light)[0], np.nan
         ),
         cost=problem.cost(state),
     )
 
 
-def rough_irradiance(
-    seen: Observations, exposures: Float64Array, model: CurveModel, weights: Float64Array
-) -> Float64Array:
+def rough_irradiance(seen: Observations, exposures: Float64Array, weights: Float64Array) -> Float64Array:
     """Return log2 of each sample's irradiance under a response, shape (M,): the mean over frames, NaN if none shows it.
 
     Frames count by their slope df/du, so that the best exposed ones decide.
     """
+    model = CurveModel.load()
     stops = model.log_irradiance(weights, seen.brightness)
     weight = seen.is_used * model.brightness(weights, stops)[1] ** 2
     total = weight.sum(axis=1)
@@ -81,10 +78,10 @@ class _StackProblem(ResponseProblem):
     The irradiances of the samples are thousands, but each touches a few observations only.
     """
 
-    def __init__(self, seen: Observations, exposures: Float64Array, model: CurveModel, weights: Float64Array) -> None:
+    def __init__(self, seen: Observations, exposures: Float64Array, weights: Float64Array) -> None:
         self.sample, self.frame = at = np.nonzero(seen.is_used | seen.is_white)
-        super().__init__(model, seen.brightness[at], seen.deviation[at], seen.is_white[at])
-        self.log_irradiance = rough_irradiance(seen, exposures, model, weights)
+        super().__init__(seen.brightness[at], seen.deviation[at], seen.is_white[at])
+        self.log_irradiance = rough_irradiance(seen, exposures, weights)
         self.starts = np.flatnonzero(np.diff(self.sample, prepend=-1))
         self.offsets = _offsets(len(exposures), int(seen.channel.max()) + 1)
         self.exposure = exposures[self.frame]

@@ -1,8 +1,8 @@
 """The library of measured cameras that comes with the product: ``python -m training.export.cameras DATA``.
 
 It is made of the measured responses of DATA/real_bodies (`training.data.real.stacks`): measurements, no photographs. A
-body has an entry for each setting, by the most certain stack. The raw files in DATA/raw_pairs are of one body more, which
-is measured here, as `crfnet calibrate` does.
+body has an entry for each setting, by the most certain stack. One more is measured here, as `crfnet calibrate` does, on
+the raw files in DATA/raw_pairs.
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
+from crfnet_core.calibration.curve_model import in_camera_mean
 from crfnet_core.calibration.raw_pairs.cells import Cells
-from crfnet_core.calibration.robust import ResponseProblem
+from crfnet_core.calibration.robust import FittedResponse, ResponseProblem
 from crfnet_core.types import BoolArray, Float64Array
 
 #: Expected deviations beyond which a residual does not count.
@@ -32,16 +32,14 @@ FLOOR = 2.0**-14
 
 
 @dataclass(frozen=True, eq=False)
-class PairFit:
+class PairFit(FittedResponse):
     """A response, and the way from raw light to the light that it takes."""
 
-    weights: Float64Array  # (K,): of the response: see `CurveModel`
     matrix: Float64Array  # (3, 3): from balanced raw light to the light of the response, whose white is 1
     local: float  # exponent of the surroundings' light in the gain: 0 without local tone mapping
     corner: float  # stops by which the corner is brightened
     tilts: Float64Array  # (S, 2): stops a place (see `Cells.place`) by which each shot brightens, right and down
     offsets: Float64Array  # (S,): stops by which each shot is brighter than the first; its own is 0
-    covariance: Float64Array  # (K, K): posterior covariance of the weights
     log_light: Float64Array  # (N, 3): log2 of the light of every cell
     residual: Float64Array  # (N, 3): brightness less the model's; NaN where nothing counts
     headroom: float  # stops by which raw saturation of a white surface lies above white
@@ -51,7 +49,6 @@ class PairFit:
 def fit_pairs(
     cells: Cells,
     saturation: float,
-    model: CurveModel,
     start: PairFit | None = None,
     *,
     headroom: tuple[float, float] = (HEADROOM, HEADROOM_DEVIATION),
@@ -61,7 +58,7 @@ def fit_pairs(
     `saturation` is the balanced raw light at which a white surface saturates, `headroom` the stops by which that lies
     above white, and their standard deviation.
     """
-    problem = _PairProblem(cells, saturation, model, headroom)
+    problem = _PairProblem(cells, saturation, headroom)
     state = problem.start() if start is None else problem.packed(start)
     problem.reweight(state, np.hypot(1, problem.chroma))
     for number in range(ROUNDS):
@@ -77,11 +74,11 @@ class _PairProblem(ResponseProblem):
     are the three channels of one cell after the other.
     """
 
-    def __init__(self, cells: Cells, saturation: float, model: CurveModel, headroom: tuple[float, float]) -> None:
+    def __init__(self, cells: Cells, saturation: float, headroom: tuple[float, float]) -> None:
         codes, self.is_open = cells.codes, cells.is_open & ~cells.is_saturated[:, None]
         near_white = cells.is_white & (codes.min(axis=1, keepdims=True) > 200)
         is_white = near_white & ~cells.is_saturated[:, None]
-        super().__init__(model, codes.ravel() / 255, cells.deviation.ravel() / 255, is_white.ravel())
+        super().__init__(codes.ravel() / 255, cells.deviation.ravel() / 255, is_white.ravel())
         self.cells, self.expected, self.saturation = cells, headroom, np.full(3, saturation)
         self.shots = int(cells.shot.max()) + 1
         own = (cells.shot[:, None] == np.arange(self.shots)).astype(np.float64)

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
+from crfnet_core.calibration.curve_model import in_camera_mean
 from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
 from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
-from crfnet_core.calibration.uncertainty import posterior_deviation
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
@@ -75,9 +74,8 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
-    model = CurveModel.load()
-    cells, fit, basis = _measured(pairs, model)
-    curve = model.response(fit.weights)
+    cells, fit, basis = _measured(pairs)
+    curve = fit.response()
     counted = np.isfinite(fit.residual)
     low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
     shots = _shot_reports(pairs, cells, fit)
@@ -85,7 +83,7 @@ def measure_pairs(
     return PairCalibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=_uncertainty(cells, fit, curve, basis, model, _saturation(pairs)),
+        uncertainty=_uncertainty(cells, fit, curve, basis, _saturation(pairs)),
         residual=_residual(fit.residual),
         metadata=pairs[0].metadata,
         points=_points(cells, fit, counted),
@@ -100,7 +98,7 @@ def measure_pairs(
     )
 
 
-def _measured(pairs: Sequence[Pair], model: CurveModel) -> tuple[Cells, PairFit, WhiteBasis]:
+def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
     """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
     curve, fit, saturation = in_camera_mean(), None, _saturation(pairs)
     for _ in range(ROUNDS):
@@ -111,12 +109,12 @@ def _measured(pairs: Sequence[Pair], model: CurveModel) -> tuple[Cells, PairFit,
         top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
         if top < LEAST_TOP:
             raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
-        fit = fit_pairs(cells, saturation, model, fit)
-        curve = model.response(fit.weights)
+        fit = fit_pairs(cells, saturation, fit)
+        curve = fit.response()
     assert fit is not None
     basis = _white_basis(cells, fit)
     if basis == WhiteBasis.RAW_CLIP:
-        fit = fit_pairs(cells, saturation, model, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
+        fit = fit_pairs(cells, saturation, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
     return cells, fit, basis
 
 
@@ -133,15 +131,11 @@ def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
     return WhiteBasis.EXTRAPOLATED if top > SEEN_TOP else WhiteBasis.BRACKETED
 
 
-def _uncertainty(
-    cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis, model: CurveModel, saturation: float
-) -> Uncertainty:
+def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis, saturation: float) -> Uncertainty:
     """Return how far a response may be off: the posterior, what halves of the pictures say, and white."""
-    halves = [
-        model.response(fit_pairs(cells.subset(cells.tile == half), saturation, model, fit).weights) for half in (0, 1)
-    ]
+    halves = [fit_pairs(cells.subset(cells.tile == half), saturation, fit).response() for half in (0, 1)]
     codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
-    shape, scale = posterior_deviation(fit.weights, fit.covariance, model, codes)
+    shape, scale = fit.deviations(codes)
     end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0]))
     return Uncertainty(
         shape={
