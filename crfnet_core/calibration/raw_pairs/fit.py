@@ -24,6 +24,9 @@ LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION = 0.2, 0.5, 0.
 #: Stops by which raw saturation of white lies above the JPEG's white: the prior mean and its standard deviation.
 HEADROOM, HEADROOM_DEVIATION = 0.2, 0.3
 
+#: The same of the entries of the matrix, where nothing of a channel counts.
+MATRIX_DEVIATION = 100.0
+
 #: Rounds of reweighting, and those that do not yet leave outliers out.
 ROUNDS, LENIENT = 5, 2
 
@@ -142,7 +145,7 @@ class _PairProblem(ResponseProblem):
         off = (self.headroom(matrix) - self.expected[0]) / self.expected[1]
         slope = self.saturation / (np.log(2) * 3 * (matrix @ self.saturation))[:, None] / self.expected[1]
         row = np.append(slope.ravel(), 0 * causes)
-        precision = np.append(np.zeros(9), self.precision)
+        precision = np.append(np.full(9, MATRIX_DEVIATION**-2), self.precision)
         cost = float(off**2 + precision @ others**2)
         return cost, row * off + precision * others, np.outer(row, row) + np.diag(precision)
 

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.curve_model import in_camera_mean
+from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
 from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
 from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
+from crfnet_core.calibration.uncertainty import CHANNEL_PART
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
@@ -43,8 +44,11 @@ MOST_APART, MOST_RESIDUAL, MOST_OUTLIERS = 0.15, 4.0, 0.35
 SAME_WHITE, SAME_WHITE_DEVIATION = 0.12, 0.03
 
 #: The least parts in stops. The shape's is set on simulated pairs, so that the stated deviation holds for nine of ten
-#: whose codes 25 to 235 were seen; without it, it holds for two of three.
-LEAST_SHAPE, LEAST_SCALE = 0.02, 0.02
+#: whose codes 25 to 235 were seen; without it, it holds for seven of ten.
+LEAST_SHAPE, LEAST_SCALE = 0.0175, 0.02
+
+#: Width in codes of the bins in which channels are compared, the cells that one needs, and the least slope a stop.
+CODE_BIN, LEAST_IN_BIN, LEAST_RISE = 32, 20, 0.01
 
 #: Standard deviation of white in stops: so that the stated one holds for four of five simulated pairs. A response that
 #: ends flat reaches white slowly, even where white is seen.
@@ -141,6 +145,7 @@ def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteB
         shape={
             "posterior": shape,
             "sampling": shape_error(*halves) / 2,
+            "channels": CHANNEL_PART * _between_channels(cells, fit),
             "least": LEAST_SHAPE,
         },
         scale={
@@ -151,6 +156,17 @@ def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteB
             "least": LEAST_SCALE,
         },
     )
+
+
+def _between_channels(cells: Cells, fit: PairFit) -> float:
+    """Return how far the channels' own responses are from the one of all, in stops: of medians over bins of codes."""
+    _, slope = CurveModel.load().brightness(fit.weights, fit.log_light)
+    counts = np.isfinite(fit.residual) & (cells.codes > FIRST_SHAPE_CODE) & (cells.codes < LAST_SHAPE_CODE)
+    off = (fit.residual / np.maximum(slope, LEAST_RISE))[counts]
+    groups = (np.floor(cells.codes / CODE_BIN) * 3 + np.arange(3))[counts]
+    parts = [off[groups == group] for group in np.unique(groups)]
+    medians = [np.median(part) for part in parts if len(part) >= LEAST_IN_BIN]
+    return float(np.sqrt(np.mean(np.square(medians)))) if medians else 0.0
 
 
 def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
