@@ -99,7 +99,7 @@ def rendered(light: NDArray[np.float64], response: ResponseCurve, options: PairO
     return np.clip(brightness + 0.5 * (brightness - gaussian_filter(brightness, (0.8, 0.8, 0))), 0, 1)
 
 
-def radii(light: NDArray[np.float32]) -> NDArray[np.float64]:
+def radii(light: NDArray[np.floating]) -> NDArray[np.float64]:
     """Return each pixel's distance from the center, 1 at a corner."""
     height, width = light.shape[:2]
     y, x = np.mgrid[:height, :width]
