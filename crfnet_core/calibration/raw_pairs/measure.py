@@ -53,10 +53,10 @@ CODE_BIN, LEAST_IN_BIN, LEAST_RISE = 32, 20, 0.01
 #: Standard deviation of white in stops: so that the stated one holds for four of five simulated pairs. A response that
 #: ends flat reaches white slowly, even where white is seen.
 WHITE_DEVIATIONS = {
-    WhiteBasis.SEEN: 0.25,
+    WhiteBasis.SEEN: 0.3,
     WhiteBasis.RAW_CLIP: 0.2,
-    WhiteBasis.EXTRAPOLATED: 0.4,
-    WhiteBasis.BRACKETED: 0.4,
+    WhiteBasis.EXTRAPOLATED: 0.45,
+    WhiteBasis.BRACKETED: 0.5,
 }
 
 #: Codes of the notices of white that was not seen.
