@@ -15,6 +15,7 @@ from crfnet_core.response.metrics import shape_error
 from crfnet_core.response.transfer_functions import srgb_encode
 from tests.helpers.footage import blurred, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -114,9 +115,8 @@ def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored
 ):
     codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
     photo, network = read_photo(write_image(tmp_path / name, codes, **attributes)), ResponseNetwork.load(fixed_model)
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, code):
         estimate_response(photo, network=network)
-    assert caught.value.code == code
     assert estimate_response(photo, network=network, options=AnalysisOptions(use_metadata=False)).photos == (name,)
 
 
