@@ -28,19 +28,10 @@ def test_files_take_their_names_together(tmp_path):
     assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
 
 
-def write(folder, names, *, problem=None):
+def write(folder, names):
     with staged_files(folder) as staged:
         for name in names:
             (staged / name).write_text("new")
-        if problem:
-            raise problem(f"{staged / names[-1]}: no room")
-
-
-def test_a_failed_block_leaves_the_folder_as_it_was(tmp_path):
-    (tmp_path / "a.txt").write_text("old")
-    with pytest.raises(ZeroDivisionError):
-        write(tmp_path, ["a.txt"], problem=ZeroDivisionError)
-    assert content(tmp_path) == {"a.txt": "old"}
 
 
 def test_errors_keep_their_class_code_and_facts_and_name_the_final_file(tmp_path):
