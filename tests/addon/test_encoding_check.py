@@ -69,7 +69,7 @@ def test_a_file_that_calls_itself_log_is_refused(make_job, tagged):
         run(make_job(tagged, mode=ApplyMode.ESTIMATE))
 
 
-def test_estimate_anyway_overrules_the_tag(make_job, tagged, estimate):
+def test_estimate_anyway_overrules_the_tag(make_job, tagged):
     found = run(make_job(tagged, mode=ApplyMode.ESTIMATE, is_forced=True)).estimate
     assert found.origins == ()
     assert found.weights.shape == (11,)

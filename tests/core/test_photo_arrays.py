@@ -9,6 +9,7 @@ from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.photo import Photo
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 ALPHA = np.array([[[255], [255]], [[0], [128]]], np.uint8)
@@ -139,6 +140,5 @@ def test_other_arrays_are_refused(array, options, code):
     ],
 )
 def test_the_constructor_checks_its_pixels(pixels, code):
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, code):
         Photo(pixels, 8, False, Path("a.png"))
-    assert caught.value.code == code
