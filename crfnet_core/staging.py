@@ -173,12 +173,12 @@ def _flush(path: Path) -> None:
 
 def _remove(temporary: Path, folder: Path) -> None:
     """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays."""
-    for path in temporary.glob(f"{_EARLIER}*/*"):
-        with suppress(OSError):
-            if os.path.lexists(folder / path.name):
-                path.unlink()
-            else:
-                path.replace(folder / path.name)
-    with suppress(OSError):  # also of closing a folder, which `ignore_errors` does not ignore
+    with suppress(OSError):  # of another run that removes it, too; and of closing, which `ignore_errors` does not ignore
+        for path in temporary.glob(f"{_EARLIER}*/*"):
+            with suppress(OSError):
+                if os.path.lexists(folder / path.name):
+                    path.unlink()
+                else:
+                    path.replace(folder / path.name)
         if not any(temporary.glob(f"{_EARLIER}*/*")):
             shutil.rmtree(temporary, ignore_errors=True)
