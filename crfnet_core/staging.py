@@ -173,7 +173,7 @@ def _flush(path: Path) -> None:
 
 def _remove(temporary: Path, folder: Path) -> None:
     """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays."""
-    with suppress(OSError):  # of another run that removes it, too; and of closing, which `ignore_errors` does not ignore
+    with suppress(OSError):  # of a run that removes it, too, or of closing, which `ignore_errors` does not ignore
         for path in temporary.glob(f"{_EARLIER}*/*"):
             with suppress(OSError):
                 if os.path.lexists(folder / path.name):

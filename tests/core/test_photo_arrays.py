@@ -47,6 +47,12 @@ def test_the_order_of_the_channels_is_as_stated(array, order):
     assert not photo.is_gray
 
 
+def test_a_file_that_is_mapped_into_memory_is_an_array(tmp_path):
+    CODES.tofile(tmp_path / "codes")
+    mapped = np.memmap(tmp_path / "codes", CODES.dtype, "r", shape=CODES.shape)
+    np.testing.assert_array_equal(Photo.from_array(mapped, color_order="RGB").pixels, EXACT)
+
+
 @pytest.mark.parametrize("bits", [10, 12, 16])
 def test_uint16_is_divided_by_the_largest_code_of_its_bit_depth(bits):
     codes = np.array([[[0, 1, 2**bits - 1]]], np.uint16)
