@@ -23,13 +23,7 @@ from crfnet_core.photograph.metadata.editors import is_editor
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real_photographs import (
-    REAL_BODIES,
-    TRUSTED_GRADES,
-    caution,
-    metadata_of_case,
-    read_measured,
-)
+from training.data.real_photographs import REAL_BODIES, TRUSTED_GRADES, caution, metadata_of_case, read_measured
 from training.data.scenes import table_rows
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
