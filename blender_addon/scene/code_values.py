@@ -9,8 +9,6 @@ If a file is opened again, Blender returns the first image in the order of names
 begins with the name of its plate, and comes behind it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import bpy

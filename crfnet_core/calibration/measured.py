@@ -1,7 +1,5 @@
 """A measured response: of an exposure stack, or of raw files and their JPEGs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
