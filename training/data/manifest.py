@@ -60,10 +60,7 @@ COLUMNS = tuple(field.name for field in fields(ManifestRow))
 
 
 def manifest_rows(data: Path) -> list[ManifestRow]:
-    """Return the rows of the data folder `data`, sorted by file.
-
-    Raise CRFNetError if a file that the folder's own tables name is absent.
-    """
+    """Return the rows of a data folder, sorted by file; CRFNetError if a file that its own tables name is absent."""
     unhashed = {*_curves(), *_tables(data), *_scenes(data), *_real(data)}
     return sorted(_hashed(data, row) for row in unhashed)
 
