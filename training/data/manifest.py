@@ -42,17 +42,13 @@ _DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.
 
 @dataclass(frozen=True, order=True)
 class ManifestRow:
-    """One file: its path in the data folder, where it comes from, and the license as the source states it.
-
-    kind: "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
-    split: "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
-    """
+    """One file: its path in the data folder, where it comes from, and the license as the source states it."""
 
     file: str
-    kind: str
+    kind: str  # "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
     source: str
     licence: str
-    split: str
+    split: str  # "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
     sha256: str = ""
 
 

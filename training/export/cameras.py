@@ -50,20 +50,14 @@ DEVELOPED = "edited/developed by software"
 
 @dataclass(frozen=True)
 class Stack:
-    """A measured exposure stack.
+    """A measured exposure stack."""
 
-    settings: the camera and its settings, as the files state them
-    error: standard deviation of its E_est
-    frames: number of exposures, or nothing where the list has none
-    caution: why it is less certain, or nothing
-    """
-
-    settings: CameraSettings
+    settings: CameraSettings  # the camera and its settings, as the files state them
     curve: ResponseCurve
-    error: float
-    frames: str
+    error: float  # standard deviation of its E_est
+    frames: str  # number of exposures, or nothing where the list has none
     grade: str
-    caution: str
+    caution: str  # why it is less certain, or nothing
 
     def is_like(self, other: Self) -> bool:
         """Return whether two stacks may be of one setting."""

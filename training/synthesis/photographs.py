@@ -59,14 +59,10 @@ SATURATED = ((80, 99.9), (90, 99.95))
 
 @dataclass(frozen=True)
 class TrainingPhotograph:
-    """Windows of one photograph and the truth about it.
+    """Windows of one photograph and the truth about it."""
 
-    windows, uint8 (4, 227, 227, 3): code values
-    curve, (1024,): the response, of this number in the source's `curve_sets`
-    """
-
-    windows: Uint8Array
-    curve: Float64Array
+    windows: Uint8Array  # uint8 (4, 227, 227, 3): code values
+    curve: Float64Array  # (1024,): the response, of this number in the source's `curve_sets`
     curve_set: int
 
 
