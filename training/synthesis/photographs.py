@@ -68,19 +68,13 @@ class TrainingPhotograph:
 
 @dataclass(frozen=True)
 class PhotographSource:
-    """Draws training photographs.
+    """Draws training photographs."""
 
-    scenes: the scenes of one split
-    curve_sets: responses, in sets of which a training run may leave some out
-    fractions: fraction of the photographs with each set; their sum is 1
-    luminance, (N,): see `training.synthesis.camera.automatic_exposure`
-    unusual: number of a set -> kinds of pictures that no response explains, in place of photographs with its responses
-    """
-
-    scenes: list[Scene]
-    curve_sets: tuple[DrawResponse, ...]
-    fractions: tuple[float, ...]
-    luminance: Float32Array
+    scenes: list[Scene]  # the scenes of one split
+    curve_sets: tuple[DrawResponse, ...]  # responses, in sets of which a training run may leave some out
+    fractions: tuple[float, ...]  # fraction of the photographs with each set; their sum is 1
+    luminance: Float32Array  # (N,): see `training.synthesis.camera.automatic_exposure`
+    #: Number of a set -> kinds of pictures that no response explains, in place of photographs with its responses.
     unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
 
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:

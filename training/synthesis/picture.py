@@ -64,16 +64,12 @@ class Sharpening:
 
 @dataclass(frozen=True)
 class Finish:
-    """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out.
+    """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out."""
 
-    chroma_blur: chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd
-    luma_smoothing: luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise
-    chroma_gain: factor on chroma
-    """
-
-    chroma_blur: int = 0
+    chroma_blur: int = 0  # chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd
+    #: Luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise.
     luma_smoothing: float = 0.0
-    chroma_gain: float = 1.0
+    chroma_gain: float = 1.0  # factor on chroma
     sharpening: Sharpening | None = None
 
     def applied(self, planes: Planes) -> Planes:
