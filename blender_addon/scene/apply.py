@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Change Blender's data as a completed job asks: after everything that can fail, and in Blender's thread only."""
 
-from __future__ import annotations
-
 import bpy
 
 from crfnet.options import device_name

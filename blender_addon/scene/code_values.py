@@ -9,8 +9,6 @@ If a file is opened again, Blender returns the first image in the order of names
 begins with the name of its plate, and comes behind it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import bpy
@@ -97,10 +95,7 @@ def is_painted_copy_shown(plate: Datablock) -> bool:
 
 
 def pack_with_plates() -> None:
-    """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again.
-
-    Linked copies are left alone.
-    """
+    """Pack the copies of plates that were packed since, and may have no file when opened again; linked ones stay."""
     for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None, ""}:
         is_packed = plate.packed_file and plate.library is None and not is_painted(plate)
         if is_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):

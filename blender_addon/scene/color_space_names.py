@@ -4,8 +4,6 @@
 Blender takes a name that the present config lacks for sRGB, without a word.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from .color_management import data_space

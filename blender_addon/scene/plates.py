@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find the image or clip that the user means, and its code values on disk."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 from typing import Any, TypeAlias

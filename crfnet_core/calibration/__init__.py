@@ -31,16 +31,5 @@ from crfnet_core.calibration.measured import (
     calibrate_pairs,
 )
 
-__all__ = [
-    "Calibration",
-    "Comparison",
-    "ExposureLabel",
-    "FrameReport",
-    "MeasuredResponse",
-    "PairCalibration",
-    "ShotReport",
-    "Uncertainty",
-    "calibrate_pairs",
-    "calibrate_stack",
-    "parse_times",
-]
+__all__ = ["Calibration", "Comparison", "ExposureLabel", "FrameReport", "MeasuredResponse", "PairCalibration"]
+__all__ += ["ShotReport", "Uncertainty", "calibrate_pairs", "calibrate_stack", "parse_times"]

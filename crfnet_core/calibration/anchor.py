@@ -1,7 +1,5 @@
 """The irradiance at which the codes reach white, which sets the scale of a response (Eq. C.3)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

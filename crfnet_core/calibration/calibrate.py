@@ -1,7 +1,5 @@
 """Measure a camera's response from an exposure stack: the whole of it on one screen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

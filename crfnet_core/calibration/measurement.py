@@ -1,7 +1,5 @@
 """From observations to an anchored response: start, fit, anchor; frames and samples that do not fit are left out."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

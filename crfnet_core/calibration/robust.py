@@ -1,7 +1,5 @@
 """The response that explains observations best, by robust nonlinear least squares: shared by stacks and raw pairs."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 

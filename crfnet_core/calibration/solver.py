@@ -1,7 +1,5 @@
 """Response, exposures and irradiances that explain a stack (Eq. C.2)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

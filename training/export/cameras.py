@@ -23,13 +23,7 @@ from crfnet_core.photograph.metadata.editors import is_editor
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real_photographs import (
-    REAL_BODIES,
-    TRUSTED_GRADES,
-    caution,
-    metadata_of_case,
-    read_measured,
-)
+from training.data.real_photographs import REAL_BODIES, TRUSTED_GRADES, caution, metadata_of_case, read_measured
 from training.data.scenes import table_rows
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
@@ -56,20 +50,14 @@ DEVELOPED = "edited/developed by software"
 
 @dataclass(frozen=True)
 class Stack:
-    """A measured exposure stack.
+    """A measured exposure stack."""
 
-    settings: the camera and its settings, as the files state them
-    error: standard deviation of its E_est
-    frames: number of exposures, or nothing where the list has none
-    caution: why it is less certain, or nothing
-    """
-
-    settings: CameraSettings
+    settings: CameraSettings  # the camera and its settings, as the files state them
     curve: ResponseCurve
-    error: float
-    frames: str
+    error: float  # standard deviation of its E_est
+    frames: str  # number of exposures, or nothing where the list has none
     grade: str
-    caution: str
+    caution: str  # why it is less certain, or nothing
 
     def is_like(self, other: Self) -> bool:
         """Return whether two stacks may be of one setting."""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find the nodes behind a node, through reroutes, other nodes and node groups, and plates linearized twice or never."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from enum import Enum
 

@@ -6,8 +6,6 @@ Then the code values are taken for sRGB and converted to the working space: the 
 screen and in files that are saved with it. A second output has the code values themselves, for the view transform Raw.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import bpy

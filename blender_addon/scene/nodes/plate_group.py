@@ -5,8 +5,6 @@ Plates of 8 bits need one, with a step at every code; deeper ones, as many as `c
 clipped to [0, 1], as where files are baked.
 """
 
-from __future__ import annotations
-
 import bpy
 import PyOpenColorIO as OCIO
 

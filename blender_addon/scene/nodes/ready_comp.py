@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ready comp: the render stands over a plate that is scaled to its size, and goes to the output and a viewer."""
 
-from __future__ import annotations
-
 import bpy
 
 from .building import GAP, IS_BLENDER_5, Socket

@@ -1,7 +1,5 @@
 """One response and one color matrix that explain the cells of raw files and their JPEGs (Eq. C.6)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
