@@ -9,8 +9,7 @@ blocks        blocks of pixels, and the most informative of them
 curve_model   the responses to choose from: EMoR plus splines
 robust        the robust least squares that stacks and raw pairs share
 solver        response, exposures and irradiances of a stack
-anchor        the irradiance at which the codes reach white
-measurement   start, fit and anchor; frames and samples that do not fit are left out
+measurement   start, fit, and the irradiance of white; frames and samples that do not fit are left out
 checks        reasons to refuse a stack, and doubts
 uncertainty   how far shape and scale may be off
 
