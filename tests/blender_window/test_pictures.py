@@ -32,8 +32,7 @@ class TestPictures(WindowTest):
 
         artist.open(self.plate("plate.jpg"))
         keep("before")
-        large = artist.open(self.plate("large.jpg"))
-        artist.call("plates.choose", large, apply="EXPORT", folder=str(self.folder / "large"))
+        artist.open(self.plate("large.jpg"))
         artist.start()
         time.sleep(0.5)
         keep("running")
