@@ -99,7 +99,7 @@ def largest_difference(path: str, expected: str, *, beside: str = "") -> float:
     return float(difference.max())
 
 
-def _box(thing: bpy.types.Object, height: int, width: int) -> tuple[slice, slice]:
+def _box(thing: bpy.types.Object, height: int, width: int) -> tuple[slice, ...]:
     """Return the rows and columns of a rendered picture that an object fills, its soft edge among them."""
     scene = bpy.context.scene
     corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
