@@ -10,6 +10,7 @@ from ..scene import compositor, plates, stored_estimate
 from ..scene.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
+from .image_editor import comparison
 from .preferences import APPLY_MODES, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
@@ -59,8 +60,9 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     return cameras
 
 
-def _expose_nodes(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
-    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
+def _expose(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
+    """Give the nodes of a plate that has been applied as nodes the exposure of its settings, and its linear view."""
+    comparison.renew_soon()
     plate = settings.id_data
     applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
     if applied is None or applied["apply"] != "NODES":
@@ -94,7 +96,7 @@ class PlateChoices:
         soft_max=6,
         min=-MAX_EXPOSURE,
         max=MAX_EXPOSURE,
-        update=_expose_nodes,
+        update=_expose,
     )
     compose: bpy.props.BoolProperty(
         name="Compose Render over Plate", description="Put the render over a plate that no node shows yet"

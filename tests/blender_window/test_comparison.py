@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.blender_window.artist import SHOW_LINEAR, SHOW_PLATE, SHOWN
 from tests.blender_window.base import WindowTest
+from tests.blender_window.screen import Box
 
 
 class TestComparison(WindowTest):
@@ -14,7 +15,8 @@ class TestComparison(WindowTest):
         artist.call("editors.pan", 37, -21)
         artist.settle()
         view, before = artist.call("editors.view"), artist.picture()
-        for _ in range(2):
+        middle = Box(artist.screen.width // 2 - 50, artist.screen.height // 2 - 50, 100, 100)
+        for exposure in (1, 2):
             row = artist.find(SHOW_LINEAR)
             artist.press(SHOW_LINEAR, row)
             artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")
@@ -23,6 +25,10 @@ class TestComparison(WindowTest):
             self.assertEqual(artist.find(SHOW_LINEAR, row=row[1]), row)
             self.keep(artist.picture(), "linear")
             self.assertNotEqual(artist.picture(), before)
+            shown = artist.picture(middle)
+            artist.call("plates.choose", name, exposure=exposure)
+            artist.wait(lambda old=shown: artist.picture(middle) != old, "the linear plate is brighter")
+            self.assert_view(artist, view)
             artist.press(SHOW_PLATE)
             artist.wait(lambda: artist.value(SHOWN) == name, "the plate is shown again")
             artist.settle()
