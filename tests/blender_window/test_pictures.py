@@ -56,7 +56,9 @@ class TestPictures(WindowTest):
         keep("linear")
         artist.call("editors.show", "NODE_EDITOR", alone=False)
         artist.settle()
-        artist.call("editors.show_all_nodes")
+        artist.call("editors.show_nodes")
         artist.call("editors.show_tab", "NODE_EDITOR")
+        artist.settle()
+        artist.screen.key("Home")  # all of them, now that their sizes are known
         artist.settle()
         keep("compositor", "NODE_EDITOR")
