@@ -141,7 +141,7 @@ def obstacle(datablock: Datablock) -> str:
     if CODE_VALUES_OF in datablock:
         return "These are the code values of a plate, not the plate: open the photograph itself"
     if BAKED_FROM in datablock:
-        return f"This is the linear plate of {datablock[BAKED_FROM]}, which has no camera response any more"
+        return f"This is linear already: it was baked from {datablock[BAKED_FROM]}"
     if datablock.filepath.lower().endswith(".gif"):
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"

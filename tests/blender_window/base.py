@@ -85,6 +85,11 @@ class WindowTest(unittest.TestCase):
         expected = files() / "expected" / Path(plate).with_suffix("") / f"{Path(plate).stem}_linear.exr"
         return artist.call("plates.largest_difference", str(path), str(expected), **options)
 
+    def assert_view(self, artist: Artist, view: list[float]) -> None:
+        """Assert that zoom and position are as they were, to a pixel of the screen."""
+        for found, expected in zip(artist.call("editors.view"), view, strict=True):
+            self.assertAlmostEqual(found, expected, delta=1)
+
     def keep(self, picture: Picture, name: str) -> Path:
         """Keep a picture for whoever looks at it later."""
         folder = Path(os.environ[PICTURES])

@@ -42,10 +42,12 @@ class TestButton(WindowTest):
         self.press_keys("ctrl+shift+z")
         self.assertEqual(self.artist.call("plates.state"), after)
 
-    def test_baked_files_hold_the_linear_values_of_the_command(self):
+    def test_baked_files_hold_the_linear_values_of_the_command_and_are_shown_in_place(self):
         self.artist.call("plates.choose", self.name, apply="BAKE", depth="float")
+        view = self.artist.call("editors.view")
         self.artist.apply()
         self.artist.settle()
+        self.assert_view(self.artist, view)
         self.keep(self.artist.picture(), "button_bake")
         (baked,) = (self.folder / "project").glob("*.exr")
         self.assert_linear(self.artist, baked, PLATE, BAKED)

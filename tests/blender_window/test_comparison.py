@@ -41,8 +41,3 @@ class TestComparison(WindowTest):
         artist.run()
         first, _, second, _ = (artist.call("editors.switch", is_after) for is_after in (True, False, True, False))
         self.assertLess(second, 0.1, f"the first took {first:.2f} s")
-
-    def assert_view(self, artist, view):
-        """Assert that zoom and position are as they were, to a pixel of the screen."""
-        for found, expected in zip(artist.call("editors.view"), view, strict=True):
-            self.assertAlmostEqual(found, expected, delta=1)

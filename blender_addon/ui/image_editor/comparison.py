@@ -80,7 +80,11 @@ def end(space: bpy.types.SpaceImageEditor) -> None:
 @contextmanager
 def same_view(context: bpy.types.Context) -> Iterator[None]:
     """Keep zoom and position of an Image Editor while it changes to another image: Blender has them for each image."""
-    space, region = context.space_data, next(each for each in context.area.regions if each.type == "WINDOW")
+    space = context.space_data
+    if space is None or space.type != "IMAGE_EDITOR":
+        yield
+        return
+    region = next(each for each in context.area.regions if each.type == "WINDOW")
     zoom, center = space.zoom_percentage, region.view2d.region_to_view(region.width / 2, region.height / 2)
     yield
     if space.image is None or not all(map(math.isfinite, center)):  # it was never drawn
