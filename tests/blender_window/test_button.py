@@ -44,6 +44,7 @@ class TestButton(WindowTest):
 
     def test_baked_files_hold_the_linear_values_of_the_command_and_are_shown_in_place(self):
         self.artist.call("plates.choose", self.name, apply="BAKE", depth="float")
+        self.artist.call("editors.pan", 37, -21)
         view = self.artist.call("editors.view")
         self.artist.apply()
         self.artist.settle()
