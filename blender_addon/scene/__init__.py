@@ -7,6 +7,7 @@ stored_estimate    the estimate as a custom property of its image or clip
 apply              the changes of a completed job
 node_group         the inverse response as a compositor node group
 look_group         the response as a compositor node group: from scene-linear light to the look of the plate
+curve_nodes        functions of colors as RGB Curves nodes
 node_building      nodes from which the two groups are built
 compositor         the place of the node group in the compositor
 ready_comp         the render over a plate, at the output and in a viewer
