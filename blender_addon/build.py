@@ -9,8 +9,6 @@ uncompressed, and all of one date; the wheel of `crfnet_core` and `crfnet` is bu
 from a folder that holds nothing else.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import what needs onnxruntime, OpenImageIO or OpenColorIO at first use, so that the add-on can always be enabled."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.metadata
 import importlib.util

@@ -1,7 +1,5 @@
 """Read a file of bounded size; write a file whole or not at all; write a document as text."""
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """Locks of open files between processes; the system lifts them when the file is closed, or a process dies."""
 
-from __future__ import annotations
-
 import sys
 from typing import IO, Any
 

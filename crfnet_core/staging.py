@@ -4,8 +4,6 @@ The files are written in a temporary folder next to their places, which only the
 the disk before their names are. The folder holds a locked file, so others can see whether its process still lives.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import shutil
@@ -175,12 +173,12 @@ def _flush(path: Path) -> None:
 
 def _remove(temporary: Path, folder: Path) -> None:
     """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays."""
-    for path in temporary.glob(f"{_EARLIER}*/*"):
-        with suppress(OSError):
-            if os.path.lexists(folder / path.name):
-                path.unlink()
-            else:
-                path.replace(folder / path.name)
-    with suppress(OSError):  # also of closing a folder, which `ignore_errors` does not ignore
+    with suppress(OSError):  # of a run that removes it, too, or of closing, which `ignore_errors` does not ignore
+        for path in temporary.glob(f"{_EARLIER}*/*"):
+            with suppress(OSError):
+                if os.path.lexists(folder / path.name):
+                    path.unlink()
+                else:
+                    path.replace(folder / path.name)
         if not any(temporary.glob(f"{_EARLIER}*/*")):
             shutil.rmtree(temporary, ignore_errors=True)

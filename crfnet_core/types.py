@@ -1,7 +1,5 @@
 """Names for arrays and callbacks; dataclasses of arrays: equal or not, and plain; the cores to work on."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import os

@@ -6,8 +6,6 @@ gamma 2.2, after the estimated response, and after the true one. Both work on li
 values. Every result is encoded again by the curve that linearized it.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -4,8 +4,6 @@ It holds the files that ``crfnet estimate tests/data/plate.jpg`` writes, except 
 size.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import shutil

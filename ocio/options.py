@@ -1,7 +1,5 @@
 """The options of the pipeline: plain, frozen, and the same for the command and for the add-on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -36,14 +34,11 @@ def device_name(device: Device | None) -> str | None:
 
 @dataclass(frozen=True, kw_only=True)
 class PlateOptions:
-    """How linear plates are written.
-
-    `gray` is the encoded brightness that becomes a linear 0.18; by default brightness 1 becomes a linear 1.
-    """
+    """How linear plates are written."""
 
     depth: str = DEPTHS[0]  # sample type of the EXR files
     exposure: float = 0.0  # stops by which the linear values are raised, after the anchor
-    gray: float | None = None
+    gray: float | None = None  # encoded brightness that becomes a linear 0.18; by default 1 becomes a linear 1
     primaries: str = PRIMARIES[0]  # of the encoded plate; "auto" goes by its tags
     output_space: str = OUTPUT_SPACES[0]
     overwrite: bool = False  # whether existing files may be replaced

@@ -1,11 +1,11 @@
 """Measure `crfnet calibrate` on stacks of known responses, beside OpenCV, or on raw pairs: docs/CALIBRATE.md's tables.
 
 python -m tests.measure_calibration [--linear DIR] [--responses N] [--only NAME]
-python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--only NAME] [--verbose]
+python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--unseen] [--only NAME] [--verbose]
 
 Scenes are the studio lights of tests/data/lights, or the linear pictures of another folder. Responses are those that
 the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn; for pairs also the measured
-ones in a folder of CSV files.
+ones in a folder of CSV files. The thresholds of pairs were set without --unseen.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageEnhance, ImageFilter
 
 from crfnet_core.calibration import calibrate_pairs, calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
@@ -25,7 +25,7 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
-from tests.helpers.pairs import drawn_options, make_pair
+from tests.helpers.pairs import drawn_options, make_pair, radii
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
 DATA = Path(__file__).parent / "data"
@@ -48,6 +48,12 @@ KINDS = {
 #: Local tone mapping of simulated pairs, and ways to make two files that are not a pair.
 LOCAL = {f"pairs, local tone mapping {part}": part for part in (0.0, 0.05, 0.15)}
 WRONG = ("another scene", "moved", "cropped", "edited")
+
+#: Other edits by programs that leave no name: the response stays, or is no longer the camera's.
+EDITS = ("crop of 99 %", "flipped", "blurred", "vignette", "saturation", "levels of a channel", "tone curve")
+
+#: Pairs that thresholds were set on, or that come before the unseen ones; the unseen ones have seeds from here on.
+SEEN_PAIRS, UNSEEN_SEED = 60, 1000
 
 
 def responses(count: int) -> list[ResponseCurve]:
@@ -116,14 +122,21 @@ def row(kind: str, found: dict[str, list]) -> str:
     return f"| {kind} | {len(ours)} | " + " | ".join(cells) + " |"
 
 
-def pair_curves(count: int, bodies: Path | None) -> list[ResponseCurve]:
-    """Return `count` responses: measured bodies and the others in turn."""
+def pair_curves(count: int, bodies: Path | None, *, unseen: bool) -> list[ResponseCurve]:
+    """Return `count` responses: measured bodies and the others in turn; unseen ones are of other bodies."""
     files = sorted(bodies.glob("*.csv")) if bodies else []
-    order = np.random.default_rng(5).permutation(len(files))
-    tables = [np.loadtxt(files[i], delimiter=",", skiprows=1)[:, 1] for i in order[: (count + 1) // 2]]
-    others = iter(responses(count - len(tables)))
-    known = [ResponseCurve.from_samples(table) for table in tables]
+    order = [files[i] for i in np.random.default_rng(5).permutation(len(files))]
+    used = order[: SEEN_PAIRS // 2]
+    names = {body_name(path) for path in used}
+    chosen = [path for path in order if body_name(path) not in names] if unseen else used
+    known = [ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1]) for path in chosen]
+    others = iter(responses(100 + count)[100 if unseen else 0 :])
     return [known[i // 2] if i % 2 == 0 and i // 2 < len(known) else next(others) for i in range(count)]
+
+
+def body_name(path: Path) -> str:
+    """Return the body of a measured response: several stacks of one are numbered."""
+    return path.stem.rstrip("0123456789")
 
 
 def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, options) -> dict:
@@ -152,12 +165,12 @@ def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, optio
     }
 
 
-def measure_pairs(kind: str, local: float, count: int, scenes: list[Path], curves, *, verbose: bool) -> None:
+def measure_pairs(kind: str, local: float, scenes: list[Path], curves, *, first: int, verbose: bool) -> None:
     """Print the row of a kind of pairs."""
     found, refused = [], []
-    for index in range(count):
+    for index in range(len(curves)):
         with tempfile.TemporaryDirectory() as folder:
-            options = drawn_options(index, local=local)
+            options = drawn_options(first + index, local=local)
             try:
                 light = light_of(scenes[index % len(scenes)])
                 found.append(measure_pair(Path(folder), light, curves[index], options))
@@ -166,14 +179,19 @@ def measure_pairs(kind: str, local: float, count: int, scenes: list[Path], curve
             if verbose:
                 print(index, scenes[index % len(scenes)].stem, len(refused), found[-1:], flush=True)
     shape, scale = (np.array([row[name] for row in found]) for name in ("shape", "scale"))
-    seen = shape[np.array([row["seen"] for row in found], dtype=bool)]
     scores = np.array([[row["shape score"], row["scale score"]] for row in found])
-    within = [", ".join(f"{part:.0%}" for part in (scores < limit).mean(axis=0)) for limit in (1, 2)]
+    is_seen = np.array([row["seen"] for row in found], dtype=bool)
+    within = [
+        ", ".join(f"{part:.0%}" for part in (scores[chosen] < limit).mean(axis=0))
+        for chosen in (is_seen, np.ones_like(is_seen))
+        for limit in (1, 2)
+    ]
+    mapped, seconds = (spread(np.array([row[name] for row in found])) for name in ("local", "seconds"))
     print(
-        f"{kind}: {len(found)} measured. Shape, median, 90 %, largest: {spread(seen)} ({len(seen)} with codes 25 to 235"
-        f" seen), {spread(shape)} (all). Scale: {spread(scale)}. Within 1 and 2 standard deviations (shape, scale):"
-        f" {'; '.join(within)}. Local: {spread(np.array([row['local'] for row in found]))}. CPU seconds:"
-        f" {spread(np.array([row['seconds'] for row in found]))}. Refused {len(refused)}: {dict(Counter(refused))}",
+        f"{kind}: {len(found)} measured. Shape, median, 90 %, largest: {spread(shape[is_seen])} ({is_seen.sum()} with"
+        f" codes 25 to 235 seen), {spread(shape)} (all). Scale: {spread(scale)}. Within 1 and 2 standard deviations"
+        f" (shape, scale), seen, then all: {'; '.join(within)}. Local: {mapped}. CPU seconds: {seconds}."
+        f" Refused {len(refused)}: {dict(Counter(refused))}",
         flush=True,
     )
 
@@ -183,21 +201,24 @@ def spread(values: np.ndarray) -> str:
     return ", ".join(f"{value:.3f}" for value in np.quantile(values, [0.5, 0.9, 1])) if len(values) else "-"
 
 
-def measure_wrong(count: int, scenes: list[Path], curves) -> None:
-    """Print how many of the files that are not a pair are refused."""
+def measure_wrong(kinds: tuple[str, ...], count: int, scenes: list[Path], curves, *, first: int) -> None:
+    """Print how many files that are not a pair, or are edited, are refused, and how wrong the others are."""
     accepted, codes = [], []
     for index in range(count):
-        kind = WRONG[index % len(WRONG)]
+        kind, seed = kinds[index % len(kinds)], first + index
         with tempfile.TemporaryDirectory() as folder:
-            light, options = light_of(scenes[index % len(scenes)]), drawn_options(index)
+            light, options = light_of(scenes[index % len(scenes)]), drawn_options(seed)
             raw, jpeg = make_pair(Path(folder), light, curves[index], options)
-            spoil(kind, Path(folder), jpeg, light_of(scenes[(index + 1) % len(scenes)]), light, curves[index], options)
+            other = light_of(scenes[(index + 1) % len(scenes)])
+            spoil(kind, Path(folder), jpeg, other, light, curves[index], options)
             try:
-                calibrate_pairs([raw, jpeg])
-                accepted.append((kind, index))
+                found = calibrate_pairs([raw, jpeg])
+                error, stated = shape_error(curves[index], found.curve), found.uncertainty.shape_stops
+                accepted.append(f"{kind} {index}: {error:.3f} ({stated:.3f})")
             except CalibrationError as problem:
                 codes.append((kind, problem.code))
-    print(f"wrong pairs: {len(codes)} of {count} refused, accepted: {accepted}; {Counter(codes)}", flush=True)
+    print(f"{len(codes)} of {count} refused: {dict(Counter(codes))}", flush=True)
+    print(f"accepted, with the error of the shape (and the stated one): {accepted}", flush=True)
 
 
 def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurve, options) -> None:
@@ -209,16 +230,35 @@ def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurv
         wrong.replace(jpeg)
         return
     image = Image.open(jpeg).convert("RGB")
-    width, height = image.size
-    if kind == "cropped":
-        part = rng.uniform(0.5, 0.88)
-        image = image.crop((0, 0, round(width * part), round(height * part)))
-        image.save(jpeg, quality=92)
-    elif rng.uniform() < 0.5:  # by a program that leaves its name
+    if kind == "edited" and rng.uniform() < 0.5:  # by a program that leaves its name
         image.save(jpeg, quality=92, exif=_software_tag("Adobe Photoshop Lightroom Classic 13.0"))
-    else:  # a gradient filter, without a name
-        gain = np.linspace(rng.uniform(0.4, 0.7), 1.2, height)[:, None, None]
-        Image.fromarray(np.clip(np.asarray(image) * gain, 0, 255).astype(np.uint8)).save(jpeg, quality=92)
+    else:
+        edited(kind, image, rng).save(jpeg, quality=92)
+
+
+def edited(kind: str, image: Image.Image, rng: np.random.Generator) -> Image.Image:
+    """Return a picture as a program changes it."""
+    part = {"cropped": rng.uniform(0.5, 0.88), "crop of 99 %": 0.99}.get(kind)
+    if part:
+        return image.crop((0, 0, round(image.width * part), round(image.height * part)))
+    if kind == "flipped":
+        return image.transpose(Image.Transpose.FLIP_LEFT_RIGHT)
+    if kind == "blurred":
+        return image.filter(ImageFilter.GaussianBlur(rng.uniform(1, 3)))
+    if kind == "saturation":
+        return ImageEnhance.Color(image).enhance(1.5)
+    codes = np.asarray(image, np.float64)
+    if kind == "vignette":
+        codes = codes * (1 - rng.uniform(0.2, 0.5) * np.square(radii(codes)))[..., None]
+    elif kind == "levels of a channel":
+        low, high = rng.uniform(10, 30), rng.uniform(225, 245)
+        channel = rng.integers(3)
+        codes[..., channel] = (codes[..., channel] - low) / (high - low) * 255
+    elif kind == "tone curve":
+        codes = codes + rng.choice([-1, 1]) * rng.uniform(8, 20) * np.sin(2 * np.pi * codes / 255)
+    else:  # a gradient filter
+        codes = codes * np.linspace(rng.uniform(0.4, 0.7), 1.2, image.height)[:, None, None]
+    return Image.fromarray(np.clip(codes, 0, 255).astype(np.uint8))
 
 
 def _software_tag(name: str) -> Image.Exif:
@@ -236,17 +276,22 @@ def main() -> None:
     parser.add_argument("--only", default="", help="kinds whose name holds this")
     parser.add_argument("--pairs", type=int, default=0, help="raw pairs of each kind, in the place of stacks")
     parser.add_argument("--bodies", type=Path, help="folder of measured responses, .csv")
+    parser.add_argument("--unseen", action="store_true", help="pairs of other scenes, responses and draws")
     parser.add_argument("--verbose", action="store_true", help="a line for every pair")
     options = parser.parse_args()
     scenes = sorted(options.linear.glob("*.exr"))
     scenes = [scenes[i] for i in np.random.default_rng(3).permutation(len(scenes))]
     if options.pairs:
-        curves = pair_curves(options.pairs, options.bodies)
+        curves = pair_curves(options.pairs, options.bodies, unseen=options.unseen)
+        scenes = scenes[SEEN_PAIRS:] if options.unseen else scenes[:SEEN_PAIRS]
+        first = UNSEEN_SEED + SEEN_PAIRS if options.unseen else 0
         for kind, local in LOCAL.items():
             if options.only in kind:
-                measure_pairs(kind, local, options.pairs, scenes, curves, verbose=options.verbose)
-        if options.only in "wrong":
-            measure_wrong(options.pairs, scenes, curves)
+                measure_pairs(kind, local, scenes, curves, first=first, verbose=options.verbose)
+        for name, kinds in (("wrong", WRONG), ("edits", EDITS)):
+            if options.only in name:
+                print(name, end=": ")
+                measure_wrong(kinds, options.pairs, scenes, curves, first=first)
         return
     print(
         "| stacks | number | shape, stops | scale, stops | E_est | E_lin | Debevec: shape, E_est"

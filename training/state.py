@@ -22,20 +22,15 @@ def moving_average(network: nn.Module, steps: float) -> AveragedModel:
 
 @dataclass
 class TrainingState:
-    """All that a run needs to go on from where it stopped.
-
-    averaged: the moving average of the network's weights
-    schedule: of the learning rate, if it is not computed from `done`
-    done: steps or epochs that are done
-    rows: the log
-    """
+    """All that a run needs to go on from where it stopped."""
 
     network: nn.Module
-    averaged: AveragedModel
+    averaged: AveragedModel  # the moving average of the network's weights
     optimizer: torch.optim.Optimizer
+    #: Of the learning rate, if it is not computed from `done`.
     schedule: torch.optim.lr_scheduler.LRScheduler | None = None
-    done: int = 0
-    rows: list[list[float]] = field(default_factory=list)
+    done: int = 0  # steps or epochs that are done
+    rows: list[list[float]] = field(default_factory=list)  # the log
 
     def move(self, loss: Tensor, *, clip: float) -> None:
         """Move the weights once along the gradient of a loss, whose norm is cut to `clip`, or not at all by 0."""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Change Blender's data as a completed job asks: after everything that can fail, and in Blender's thread only."""
 
-from __future__ import annotations
-
 import bpy
 
 from crfnet.options import device_name
@@ -12,9 +10,11 @@ from ..work.job import ApplyMode, Job
 from ..work.run import CompletedJob
 from ..work.wording import shortened
 from ..work.writers import Baked, Exported
-from . import compositor, look_group, node_group, stored_estimate
+from . import stored_estimate
 from .code_values import code_values
-from .plates import BAKED_FROM, Datablock, alpha_mode, datablock_of_plate
+from .nodes import compositor, look_group, plate_group
+from .nodes.links import LOOK, PLATE
+from .plates import BAKED_FROM, CODE_VALUES_OF, Datablock, alpha_mode, datablock_of_plate, release_pasted
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -24,8 +24,9 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     file, or the config lacks a color space that the nodes need.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
+    release_pasted(PLATE, LOOK, CODE_VALUES_OF)
     if completed.is_applied and completed.files is None:
-        node_group.check_config()
+        plate_group.check_config()
         shown_tree(context)  # refuses one that is linked
     stored_estimate.store(datablock, completed.estimate)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
@@ -69,7 +70,7 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
 
 def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:
     """Build the node group, and insert it after the plate in the compositor."""
-    group = node_group.build_group(datablock, completed.job.plate.name, completed.estimate.curve, completed.stops)
+    group = plate_group.build_group(datablock, completed.job.plate.name, completed.estimate.curve, completed.stops)
     wanted = compositor.PlateNodes(
         plate=datablock,
         codes=code_values(datablock),
@@ -111,7 +112,7 @@ def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
     image.filepath = _path_like(plate, image.filepath)
     image.reload()
     image.alpha_mode = "CHANNEL_PACKED" if alpha_mode(plate) == "CHANNEL_PACKED" else "PREMUL"  # as OpenEXR demands
-    image.colorspace_settings.name = node_group.linear_rec709()
+    image.colorspace_settings.name = plate_group.linear_rec709()
     return image
 
 
@@ -129,7 +130,7 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
         clip.use_proxy = False  # its proxies show the plate
     clip.filepath = _path_like(plate, first)  # reads the files again
     clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset
-    clip.colorspace_settings.name = node_group.linear_rec709()
+    clip.colorspace_settings.name = plate_group.linear_rec709()
     return clip
 
 

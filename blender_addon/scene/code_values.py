@@ -9,8 +9,6 @@ If a file is opened again, Blender returns the first image in the order of names
 begins with the name of its plate, and comes behind it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import bpy
@@ -18,7 +16,7 @@ import bpy
 from . import stored_estimate
 from .color_management import data_space
 from .packed_images import has_own_file, is_painted, pixels_of
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, short_hash
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, mark, short_hash
 
 #: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -38,7 +36,7 @@ def code_values(plate: Datablock) -> Datablock:
         if earlier is not None:
             earlier.user_remap(copy)
             _collection(plate).remove(earlier)
-        copy[CODE_VALUES_OF] = plate
+        mark(copy, CODE_VALUES_OF, plate)
     copy.name = _name_behind(plate)
     copy[_READ] = file_state(plate)
     return copy
@@ -97,11 +95,8 @@ def is_painted_copy_shown(plate: Datablock) -> bool:
 
 
 def pack_with_plates() -> None:
-    """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again.
-
-    Linked copies are left alone.
-    """
-    for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None}:
+    """Pack the copies of plates that were packed since, and may have no file when opened again; linked ones stay."""
+    for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None, ""}:
         is_packed = plate.packed_file and plate.library is None and not is_painted(plate)
         if is_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
@@ -110,7 +105,7 @@ def pack_with_plates() -> None:
 def note_files_as_read() -> None:
     """Note, when a scene has been opened, that the copies show the files as they are now: Blender reads them anew."""
     for copy in (*bpy.data.images, *bpy.data.movieclips):
-        if _READ in copy and (plate := copy.get(CODE_VALUES_OF)) is not None:
+        if _READ in copy and (plate := copy.get(CODE_VALUES_OF)):
             copy[_READ] = file_state(plate)
 
 

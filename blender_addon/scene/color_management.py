@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The OpenColorIO config that this Blender runs on, its color spaces, and the scene's view transform."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

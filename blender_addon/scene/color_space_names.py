@@ -4,14 +4,12 @@
 Blender takes a name that the present config lacks for sRGB, without a word.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from .color_management import data_space
-from .look_group import srgb
-from .node_group import linear_rec709, working_space
-from .node_links import LOOK, PLATE
+from .nodes.links import LOOK, PLATE
+from .nodes.look_group import srgb
+from .nodes.plate_group import linear_rec709, working_space
 from .plates import CODE_VALUES_OF
 
 

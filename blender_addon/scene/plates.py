@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find the image or clip that the user means, and its code values on disk."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -35,6 +33,9 @@ COMPARED_PLATE = "camera_response_plate"
 
 #: The custom property of a linear plate that was baked; its value is the name of the plate.
 BAKED_FROM = "camera_response_baked_from"
+
+#: The custom property with the first `short_hash` of a plate, on the plate and on the data that was made for it.
+_HASH = "camera_response_hash"
 
 #: What a plate is in Blender's data.
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
@@ -142,6 +143,8 @@ def obstacle(datablock: Datablock) -> str:
         return "These are the code values of a plate, not the plate: open the photograph itself"
     if BAKED_FROM in datablock:
         return f"This is linear already: it was baked from {datablock[BAKED_FROM]}"
+    if getattr(datablock, "use_multiview", False):  # which clips do not have
+        return "This image holds views for two eyes: open the picture of one eye, and untick Use Multi-View"
     if datablock.filepath.lower().endswith(".gif"):
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
@@ -247,6 +250,24 @@ def short_hash(datablock: Datablock) -> str:
     """
     path = str(_path(datablock)) if has_own_file(datablock) else f"{bpy.data.filepath}/{datablock.name}"
     return hashlib.sha256(path.encode(errors="surrogateescape")).hexdigest()[:4]
+
+
+def mark(made: bpy.types.ID, name: str, plate: Datablock) -> None:
+    """Note on a node group or copy, in a custom property of a name, that it was made for a plate."""
+    plate[_HASH] = plate.get(_HASH) or short_hash(plate)
+    made[name], made[_HASH] = plate, plate[_HASH]
+
+
+def release_pasted(*names: str) -> None:
+    """Empty the custom properties of these names on data that was pasted from another file without its plate.
+
+    Blender then takes the plate of the same name in this file for it. Such nodes stay as they are.
+    """
+    for made in (*bpy.data.node_groups, *bpy.data.images, *bpy.data.movieclips):
+        for name in names:
+            plate = made.get(name)
+            if plate and made.get(_HASH, plate.get(_HASH)) != plate.get(_HASH) and made.library is None:
+                made[name] = ""
 
 
 def alpha_mode(datablock: Datablock) -> str:

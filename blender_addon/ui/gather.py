@@ -13,7 +13,8 @@ from crfnet.options import EstimateOptions, stated_device
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.estimate.options import AnalysisOptions
 
-from ..scene import color_management, node_group, plates, stored_estimate
+from ..scene import color_management, plates, stored_estimate
+from ..scene.nodes import plate_group
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate
 from .plate_settings import CHOICES
@@ -42,7 +43,7 @@ def gather_job(
                 f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
                 " photograph as JPEG or PNG"
             )
-        node_group.check_config()
+        plate_group.check_config()
     return Job(
         plate=plate,
         estimation=Estimation(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Handlers for opening and saving a .blend file, and for undo.
+"""Handlers for opening, importing from and saving a .blend file, and for undo.
 
 Before a file is saved and around undo, editors that show a linear plate for comparison go back to the plate, so that it
 is never saved. The code values of plates that were packed are packed, too.
@@ -14,7 +14,8 @@ from typing import Any
 import bpy
 
 from .. import lazy_import
-from ..scene import code_values, node_links
+from ..scene import code_values
+from ..scene.nodes import links
 from ..work.errors import expected_errors
 from .image_editor import comparison
 
@@ -26,17 +27,20 @@ def end_comparisons(*_arguments: Any) -> None:
 
 
 @bpy.app.handlers.persistent
-def check_opened_file(*_arguments: Any) -> None:
-    """Name color spaces as the present config does, and note that the code values are from the present files.
-
-    Blender has just read these.
-    """
-    comparison.end_all()
-    if node_links.has_groups():
+def rename_color_spaces(*_arguments: Any) -> None:
+    """Name the color spaces of a file, which may have been made under another config, as the present one does."""
+    if links.has_groups():
         try:
             lazy_import.load(".scene.color_space_names").rename_color_spaces()
         except expected_errors() as problem:
             sys.stderr.write(f"Camera response: {problem}\n")
+
+
+@bpy.app.handlers.persistent
+def check_opened_file(*_arguments: Any) -> None:
+    """Check color spaces, and note that the code values are from the present files, which Blender has just read."""
+    comparison.end_all()
+    rename_color_spaces()
     code_values.note_files_as_read()
 
 
@@ -50,6 +54,7 @@ def prepare_saving(*_arguments: Any) -> None:
 #: The handlers: Blender's name of the occasion, and the function.
 _HANDLERS: dict[str, Callable[..., None]] = {
     "load_post": check_opened_file,
+    "blend_import_post": rename_color_spaces,
     "save_pre": prepare_saving,
     **dict.fromkeys(("undo_pre", "undo_post", "redo_pre", "redo_post"), end_comparisons),
 }

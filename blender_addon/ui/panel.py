@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..scene import code_values, compositor, node_links, plates, stored_estimate
+from ..scene import code_values, plates, stored_estimate
+from ..scene.nodes import compositor, links
 from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
@@ -103,8 +104,8 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     warnings = (
         "The file has changed since the estimate: estimate again." if is_changed else "",
         code_values.outdated(datablock, state),
-        node_links.linearized_twice(datablock),
-        node_links.without_group(datablock),
+        links.linearized_twice(datablock),
+        links.without_group(datablock),
     )
     draw_paragraphs(layout, [each for each in warnings if each], letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):

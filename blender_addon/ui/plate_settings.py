@@ -6,8 +6,9 @@ from contextlib import suppress
 import bpy
 
 from .. import lazy_import
-from ..scene import compositor, plates, stored_estimate
-from ..scene.ready_comp import is_plain
+from ..scene import plates, stored_estimate
+from ..scene.nodes import compositor
+from ..scene.nodes.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .image_editor import comparison

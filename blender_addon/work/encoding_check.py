@@ -4,8 +4,6 @@
 The estimator judges the metadata of their files: `crfnet_core.photograph.metadata.color_tags`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from pathlib import Path

@@ -4,8 +4,6 @@
 They are not `crfnet_core.errors.CRFNetError`, because the add-on must report that the estimator cannot be imported.
 """
 
-from __future__ import annotations
-
 import sys
 
 

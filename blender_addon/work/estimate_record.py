@@ -6,8 +6,6 @@ else; several texts are joined by line breaks, and nested values are JSON. A cha
 `scene.stored_estimate.LAYOUT`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

@@ -43,10 +43,7 @@ SHORT_WARNINGS = {
 NARROW_RANGE = "narrow_range"
 
 #: Each verdict as a sentence about the response, for one-line reports.
-_SENTENCES = {
-    "usable": "the response is usable",
-    "do not trust": "the response is not to be trusted",
-}
+_SENTENCES = {"usable": "the response is usable", "do not trust": "the response is not to be trusted"}
 
 
 class PanelText(NamedTuple):

@@ -4,8 +4,6 @@
 `check_targets` checks before the estimate that they can be written.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -7,7 +7,8 @@ frames        the frames of a stack: read, thinned out, checked against each oth
 alignment     integer shifts by phase correlation of rank images
 blocks        blocks of pixels, and the most informative of them
 curve_model   the responses to choose from: EMoR plus splines
-solver        response, exposures and irradiances by robust least squares
+robust        the robust least squares that stacks and raw pairs share
+solver        response, exposures and irradiances of a stack
 anchor        the irradiance at which the codes reach white
 measurement   start, fit and anchor; frames and samples that do not fit are left out
 checks        reasons to refuse a stack, and doubts
@@ -30,16 +31,5 @@ from crfnet_core.calibration.measured import (
     calibrate_pairs,
 )
 
-__all__ = [
-    "Calibration",
-    "Comparison",
-    "ExposureLabel",
-    "FrameReport",
-    "MeasuredResponse",
-    "PairCalibration",
-    "ShotReport",
-    "Uncertainty",
-    "calibrate_pairs",
-    "calibrate_stack",
-    "parse_times",
-]
+__all__ = ["Calibration", "Comparison", "ExposureLabel", "FrameReport", "MeasuredResponse", "PairCalibration"]
+__all__ += ["ShotReport", "Uncertainty", "calibrate_pairs", "calibrate_stack", "parse_times"]

@@ -1,7 +1,5 @@
 """Align the frames of a stack by integer shifts: phase correlation of rank images, which no exposure changes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any

@@ -1,13 +1,10 @@
 """The irradiance at which the codes reach white, which sets the scale of a response (Eq. C.3)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
 from crfnet_core.calibration.blocks import PARTLY_WHITE, Observations
-from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.solver import StackFit
 from crfnet_core.types import Float64Array
 
@@ -39,7 +36,7 @@ class Anchor:
     is_seen: bool  # whether samples reach white in some frame and are measured in another
 
 
-def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, fit: StackFit) -> Anchor:
+def find_white(seen: Observations, exposures: Float64Array, fit: StackFit) -> Anchor:
     """Return where white is.
 
     Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
@@ -51,11 +48,11 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
-    irradiance = np.exp2(model.log_irradiance(fit.weights, codes / 255))
+    irradiance = np.exp2(fit.log_inverse(codes / 255))
     parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
     parabolic = float(np.log2(max(parabola, irradiance[-1])))
     crossing, blur = _crossing(seen, fit.exposed(exposures, seen))
-    before = float(model.log_irradiance(fit.weights, np.array([LINE_FROM / 255]))[0])
+    before = float(fit.log_inverse(np.array([LINE_FROM / 255]))[0])
     per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
     crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
     parts = (LEAST_DEVIATION, (crossed - parabolic) / 2, blur / 2, crossed - crossing)

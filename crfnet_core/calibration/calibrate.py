@@ -1,7 +1,5 @@
 """Measure a camera's response from an exposure stack: the whole of it on one screen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +17,7 @@ from crfnet_core.calibration.checks import (
     nearest_known,
     notices_of,
 )
-from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
+from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measured import MeasuredResponse
@@ -89,15 +87,14 @@ def calibrate_stack(
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
     check_seen(white * every.brightness[every.is_used])
-    model = CurveModel.load()
-    labels, measurement, other = _measured(every, _readings(exposures, frames[0]), model)
+    labels, measurement, other = _measured(every, _readings(exposures, frames[0]))
     names = [frame.path.name for frame in frames]
     check_measurement(measurement, names, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=uncertainty_of(measurement, other, model, white=white),
+        uncertainty=uncertainty_of(measurement, other, white=white),
         residual=white * measurement.residual,
         white=white,
         reaches_white=measurement.anchor.is_seen,
@@ -140,16 +137,14 @@ def _readings(exposures: Exposures, first: Frame) -> list[_Reading]:
     return [snapped] if is_same else [snapped, nominal]
 
 
-def _measured(
-    every: Observations, readings: Sequence[_Reading], model: CurveModel
-) -> tuple[_Reading, Measurement, ResponseCurve | None]:
+def _measured(every: Observations, readings: Sequence[_Reading]) -> tuple[_Reading, Measurement, ResponseCurve | None]:
     """Return the reading of the labels that costs less, its measurement, and the other reading's response."""
     first, *others = readings
-    measurement = measure(every, first.stops, model)
+    measurement = measure(every, first.stops)
     if not others:
         return first, measurement, None
     other = others[0]
-    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], model, measurement.curve)
+    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], measurement.fit.weights)
     if measurement.fit.cost - first.bonus <= again.fit.cost - other.bonus:
         return first, measurement, again.curve
     return other, replace(again, frames=measurement.frames, outliers=measurement.outliers), measurement.curve

@@ -1,7 +1,5 @@
 """Refuse stacks that cannot be measured, and note doubts about those that can."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from typing import NamedTuple
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.posterior import ResponseBank
+from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, IndexArray
 
 #: log2 of the least and of the largest irradiance, white = 1, and steps to a stop of the table between them.
 LOWEST, HIGHEST, STEPS = -14.0, 1.0, 32
@@ -37,25 +36,16 @@ LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 END_SAMPLES = 24
 
 
-class CurveValues(NamedTuple):
-    """A response at irradiances of any shape S: f, shape S; df / du, shape S; df / d weights, shape (*S, K)."""
-
-    brightness: Float64Array
-    slope: Float64Array
-    gradient: Float64Array
-
-
 @dataclass(frozen=True, eq=False)
 class CurveModel:
     """Responses that are linear in K weights, tabulated over u = log2 of irradiance.
 
-    Beyond white they go on as straight lines in irradiance, so that the fit can lower an irradiance that began too
-    high.
+    A priori the weights are independent, each with the standard deviation 1. Beyond white the responses go on as
+    straight lines in irradiance, so that the fit can lower an irradiance that began too high.
     """
 
     mean: Float64Array  # (G,): the response of weights 0
     basis: Float64Array  # (G, K): the change of the response by a unit of each weight
-    precision: Float64Array  # (K, K): inverse of the weights' prior covariance
 
     @classmethod
     @cache
@@ -63,24 +53,21 @@ class CurveModel:
         """Return the model of the packaged EMoR, with weights as widely spread as in the packaged responses."""
         emor, bank = EmorBasis.load(), ResponseBank.load()
         weights = bank.weights[bank.ordinary]
-        covariance = WIDENING * weights.T @ weights / len(weights)
-        splines = cubic_splines(emor.mean)
-        curves = np.vstack([emor.components, splines])
-        precision = np.zeros((len(curves), len(curves)))
-        size = len(covariance)
-        precision[:size, :size] = np.linalg.inv(covariance)
-        precision[range(size, len(curves)), range(size, len(curves))] = SPLINE_DEVIATION**-2
-        return cls(_tabulated(emor.mean), _tabulated(curves).T.copy(), precision)
+        spread = np.linalg.cholesky(WIDENING * weights.T @ weights / len(weights))
+        curves = np.vstack([spread.T @ emor.components, SPLINE_DEVIATION * cubic_splines(emor.mean)])
+        return cls(_tabulated(emor.mean), np.transpose([_tabulated(curve) for curve in curves]).copy())
 
-    def values(self, weights: Float64Array, log_irradiance: Float64Array) -> CurveValues:
-        """Return the response with `weights`, shape (K,), at `log_irradiance`, which is clipped to the table."""
-        position = np.clip((log_irradiance - LOWEST) * STEPS, 0, len(self.mean) - 1.001)
-        below = position.astype(np.intp)
-        part = (position - below)[..., None]
-        gradient = (1 - part) * self.basis[below] + part * self.basis[below + 1]
+    def brightness(self, weights: Float64Array, log_irradiance: Float64Array) -> tuple[Float64Array, Float64Array]:
+        """Return f and df / du of the response with `weights`, shape (K,), at `log_irradiance` of any shape."""
+        below, part = _position(log_irradiance)
         table = self.mean + self.basis @ weights
-        brightness = (1 - part[..., 0]) * table[below] + part[..., 0] * table[below + 1]
-        return CurveValues(brightness, (table[below + 1] - table[below]) * STEPS, gradient)
+        rise = table[below + 1] - table[below]
+        return table[below] + part * rise, rise * STEPS
+
+    def gradient(self, log_irradiance: Float64Array) -> Float64Array:
+        """Return df / d weights at `log_irradiance` of shape S, for any weights: (*S, K)."""
+        below, part = _position(log_irradiance)
+        return (1 - part[..., None]) * self.basis[below] + part[..., None] * self.basis[below + 1]
 
     def low_slopes(self, weights: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return what slopes lack to `LEAST_SLOPE`, in `SLOPE_DEVIATION`, (L,), and how weights raise the low ones."""
@@ -89,10 +76,15 @@ class CurveModel:
         lacking = np.maximum(LEAST_SLOPE - slope, 0) / SLOPE_DEVIATION
         return lacking, basis / SLOPE_DEVIATION * (lacking > 0)[:, None]
 
+    @cached_property
+    def center(self) -> Float64Array:
+        """The most likely weights a priori, shape (K,): of the mean response of cameras' own renderings."""
+        return self.weights_of(in_camera_mean())
+
     def weights_of(self, curve: ResponseCurve) -> Float64Array:
         """Return the weights, shape (K,), whose response is nearest to `curve` and not unlikely by the prior."""
         wanted = _tabulated(curve.brightness) - self.mean
-        system = self.basis.T @ self.basis + 1e-4 * self.precision
+        system = self.basis.T @ self.basis + 1e-4 * np.eye(self.basis.shape[1])
         return np.asarray(np.linalg.solve(system, self.basis.T @ wanted), dtype=np.float64)
 
     def log_irradiance(self, weights: Float64Array, brightness: Float64Array) -> Float64Array:
@@ -116,6 +108,13 @@ class CurveModel:
         return ResponseCurve.from_samples(np.append(np.minimum(samples[:-1], 1), 1.0))
 
 
+def in_camera_mean() -> ResponseCurve:
+    """Return the mean response of cameras' own renderings: the start of a fit, and the center of its prior."""
+    bank = ResponseBank.load()
+    members = np.any([bank.members(family) for family in IN_CAMERA], axis=0)
+    return ResponseCurve.from_samples(bank.brightness[members].mean(axis=0, dtype=np.float64))
+
+
 def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
     """Return a response in parts of the file's largest code, given one in parts of the code of white.
 
@@ -124,6 +123,13 @@ def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
     stop).
     """
     return ResponseCurve(np.append(white * curve.brightness[:-1], 1.0))
+
+
+def _position(log_irradiance: Float64Array) -> tuple[IndexArray, Float64Array]:
+    """Return the place in the table that irradiance is above, and by what part of a step; clipped to the table."""
+    position = np.clip((log_irradiance - LOWEST) * STEPS, 0, (HIGHEST - LOWEST) * STEPS - 0.001)
+    below = position.astype(np.intp)
+    return below, position - below
 
 
 def table_stops() -> Float64Array:
@@ -136,27 +142,19 @@ def cubic_splines(mean: Float64Array) -> Float64Array:
 
     Source: de Boor, "On calculating with B-splines", 1972.
     """
-    knots = np.r_[(KNOTS[0],) * 3, KNOTS, (KNOTS[-1],) * 3]
-    at = np.clip(mean, 0, 1 - 1e-9)[None]
-    splines = ((knots[:-1, None] <= at) & (at < knots[1:, None])).astype(np.float64)
+    knots = np.r_[(KNOTS[0],) * 3, KNOTS, (KNOTS[-1],) * 3][:, None]
+    at = np.clip(mean, 0, 1 - 1e-9)
+    splines = ((knots[:-1] <= at) & (at < knots[1:])).astype(np.float64)
     for degree in range(1, 4):
-        rise = _ratio(at - knots[: -degree - 1, None], (knots[degree:-1] - knots[: -degree - 1])[:, None])
-        fall = _ratio(knots[degree + 1 :, None] - at, (knots[degree + 1 :] - knots[1:-degree])[:, None])
-        splines = rise * splines[:-1] + fall * splines[1:]
+        width = np.maximum(knots[degree:] - knots[:-degree], 1e-9)  # where it is 0, so is the spline
+        part = (at - knots[:-degree]) / width * splines
+        splines = part[:-1] + splines[1:] - part[1:]
     return np.asarray(splines[1:-1], dtype=np.float64)
 
 
-def _ratio(number: Float64Array, size: Float64Array) -> Float64Array:
-    """Return number / size, and 0 where size is 0."""
-    return np.where(size > 0, number / np.where(size > 0, size, 1), 0)
-
-
-def _tabulated(curves: Float64Array) -> Float64Array:
-    """Return curves of shape (..., 1024) over uniform irradiance on the table, continued beyond white: (..., G)."""
+def _tabulated(curve: Float64Array) -> Float64Array:
+    """Return a curve of shape (1024,) over uniform irradiance on the table, continued beyond white: (G,)."""
     irradiance = np.exp2(table_stops())
-    position = np.minimum(irradiance, 1) * (SAMPLES - 1)
-    below = np.minimum(position.astype(np.intp), SAMPLES - 2)
-    inside = curves[..., below] + (position - below) * (curves[..., below + 1] - curves[..., below])
-    slope = (curves[..., -1] - curves[..., -1 - END_SAMPLES]) * (SAMPLES - 1) / END_SAMPLES
-    beyond = np.maximum(irradiance - 1, 0)
-    return np.asarray(inside + slope[..., None] * beyond, dtype=np.float64)
+    slope = (curve[-1] - curve[-1 - END_SAMPLES]) * (SAMPLES - 1) / END_SAMPLES
+    inside = np.interp(irradiance, np.linspace(0, 1, SAMPLES), curve)
+    return np.asarray(inside + slope * np.maximum(irradiance - 1, 0), dtype=np.float64)

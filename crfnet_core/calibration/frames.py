@@ -1,7 +1,5 @@
 """The frames of a stack: read, thinned out, and checked against each other."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A measured response: of an exposure stack, or of raw files and their JPEGs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -114,10 +112,7 @@ class PairCalibration(MeasuredResponse):
 def calibrate_pairs(
     paths: Sequence[Path], *, accept_edited: bool = False, progress: Progress | None = None
 ) -> PairCalibration:
-    """Return the result of `raw_pairs.measure.measure_pairs`, which needs packages that are optional.
-
-    Raise CalibrationError if these are absent.
-    """
+    """Return the result of `raw_pairs.measure.measure_pairs`; CalibrationError if its optional packages are absent."""
     try:
         from crfnet_core.calibration.raw_pairs.measure import measure_pairs
     except ImportError:

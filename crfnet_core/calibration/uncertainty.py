@@ -8,16 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
+from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.measured import Uncertainty
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
 from crfnet_core.calibration.solver import TIME_DEVIATION
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
 from crfnet_core.types import Float64Array
-
-#: Draws from the posterior of the curve's weights, and their seed.
-DRAWS, SEED = 64, 0
 
 #: The rest in stops where nothing disagrees: blocks are not flat, JPEG, the model.
 LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
@@ -29,9 +26,7 @@ CHANNEL_PART = 0.5
 LEAST_SAMPLES = 60
 
 
-def uncertainty_of(
-    measurement: Measurement, other_labels: ResponseCurve | None, model: CurveModel, *, white: float
-) -> Uncertainty:
+def uncertainty_of(measurement: Measurement, other_labels: ResponseCurve | None, *, white: float) -> Uncertainty:
     """Return how far a measured response may be off, at the codes of the file.
 
     `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
@@ -39,18 +34,16 @@ def uncertainty_of(
     """
     curve = in_file_codes(measurement.curve, white)
     even = measurement.seen.block % 2 == 0
-    parts = [
-        _curve_of(measurement.seen.subset(part), measurement.exposures, measurement, model) for part in (even, ~even)
-    ]
-    halves = [in_file_codes(part, white) for part in parts]
-    alone = [_channel_curve(measurement, channel, model) for channel in range(measurement.fit.offsets.shape[1])]
+    parts = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
+    first, second = (in_file_codes(part, white) for part in parts)
+    alone = (_channel_curve(measurement, channel) for channel in range(measurement.fit.offsets.shape[1]))
     channels = [in_file_codes(channel, white) for channel in alone]
     others = [] if other_labels is None else [in_file_codes(other_labels, white)]
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
-    posterior = posterior_deviation(measurement.fit.weights, measurement.fit.covariance, model, codes)
+    posterior = measurement.fit.deviations(codes)
     shape = {
         "posterior": posterior[0],
-        "sampling": shape_error(halves[0], halves[1]) / 2,
+        "sampling": shape_error(first, second) / 2,
         "channels": CHANNEL_PART * _rms(shape_error(curve, channel) for channel in channels),
         "times": _time_deviation(measurement, codes),
         "labels": 0.5 * _rms(shape_error(curve, other) for other in others),
@@ -58,7 +51,7 @@ def uncertainty_of(
     }
     scale = {
         "posterior": posterior[1],
-        "sampling": abs(scale_error(halves[0], halves[1])) / 2,
+        "sampling": abs(scale_error(first, second)) / 2,
         "channels": CHANNEL_PART * _rms(scale_error(curve, channel) for channel in channels),
         "white": measurement.anchor.deviation,
         "labels": 0.5 * _rms(scale_error(curve, other) for other in others),
@@ -67,32 +60,18 @@ def uncertainty_of(
     return Uncertainty(shape, scale)
 
 
-def _curve_of(
-    seen: Observations, exposures: Float64Array, measurement: Measurement, model: CurveModel
-) -> ResponseCurve:
+def _curve_of(seen: Observations, exposures: Float64Array, measurement: Measurement) -> ResponseCurve:
     """Return the response of a part of the samples, or of all if the part is too small."""
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
-    return fit_and_anchor(seen, exposures, model, measurement.curve, rounds=1).curve
+    return fit_and_anchor(seen, exposures, measurement.fit.weights, rounds=1).curve
 
 
-def _channel_curve(measurement: Measurement, channel: int, model: CurveModel) -> ResponseCurve:
+def _channel_curve(measurement: Measurement, channel: int) -> ResponseCurve:
     """Return the response of one channel by itself, with the exposures that all channels found for it."""
     part = measurement.seen.subset(measurement.seen.channel == channel)
     alone = replace(part, channel=np.zeros_like(part.channel))
-    return _curve_of(alone, measurement.exposures + measurement.fit.offsets[:, channel], measurement, model)
-
-
-def posterior_deviation(
-    mean: Float64Array, covariance: Float64Array, model: CurveModel, codes: Float64Array
-) -> tuple[float, float]:
-    """Return the standard deviations of shape and scale at some codes over draws from the posterior, in stops."""
-    rng = np.random.default_rng(SEED)
-    weights = rng.multivariate_normal(mean, covariance, size=DRAWS, method="eigh")
-    stops = np.stack([model.log_irradiance(drawn, codes) for drawn in weights])
-    off = stops - stops.mean(axis=0)
-    scales = off.mean(axis=1)
-    return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
+    return _curve_of(alone, measurement.exposures + measurement.fit.offsets[:, channel], measurement)
 
 
 def _time_deviation(measurement: Measurement, codes: Float64Array) -> float:

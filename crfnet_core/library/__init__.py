@@ -11,16 +11,5 @@ from crfnet_core.library.camera import Camera, CameraSettings
 from crfnet_core.library.documents import camera_document, read_calibration
 from crfnet_core.library.library import DATA_VARIABLE, CameraLibrary, find_camera, listed_cameras
 
-__all__ = [
-    "DATA_VARIABLE",
-    "Camera",
-    "CameraLibrary",
-    "CameraSettings",
-    "camera_document",
-    "camera_estimate",
-    "find_camera",
-    "listed_cameras",
-    "offered_cameras",
-    "read_calibration",
-    "with_camera",
-]
+__all__ = ["DATA_VARIABLE", "Camera", "CameraLibrary", "CameraSettings", "camera_document", "camera_estimate"]
+__all__ += ["find_camera", "listed_cameras", "offered_cameras", "read_calibration", "with_camera"]

@@ -1,7 +1,5 @@
 """A camera's response as an estimate, and the cameras of a photograph's make and model."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A camera as a JSON document, and back; and the document of a calibration as a camera."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path

@@ -4,8 +4,6 @@ The parts are found by Protocol Buffers' rules for messages, https://protobuf.de
 numbers of `onnx.proto`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,10 +1,9 @@
 """Photographs: read from files, with their metadata.
 
 image_io      the one reader of image files
-photo         a photograph's code values, and the integer samples of a file
+photo         a photograph's code values, the integer samples of a file, and turns
 arrays        pixels from the arrays of NumPy, Pillow and OpenCV
 yuv           YUV to RGB, for movies and AVIF
-orientation   quarter turns: pictures upright
 metadata      the origin of a file: device, editor, encoding, color tags
 recognition   inputs that are not camera photographs: log footage, limited range, tagged encodings
 """

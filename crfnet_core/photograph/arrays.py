@@ -1,7 +1,5 @@
 """Pixels from arrays: their type, shape and range are checked, and codes become encoded brightness in [0, 1]."""
 
-from __future__ import annotations
-
 from typing import Any, Literal, get_args
 
 import numpy as np

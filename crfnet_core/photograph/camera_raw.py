@@ -1,7 +1,5 @@
 """Read camera raw with rawpy (LibRaw): the light of the sensor as it is stored, and the camera's own JPEG in it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -81,17 +79,9 @@ def _bayer_light(raw: Any) -> tuple[Float32Array, BoolArray]:
 
 def _developed_light(raw: Any, rawpy: Any) -> tuple[Float32Array, BoolArray]:
     """Return LibRaw's own linear picture at half size, in the camera's colors: for all but Bayer mosaics."""
-    codes = raw.postprocess(
-        half_size=True,
-        gamma=(1, 1),
-        no_auto_bright=True,
-        user_wb=[1, 1, 1, 1],
-        output_color=rawpy.ColorSpace.raw,
-        output_bps=16,
-        user_flip=0,
-        highlight_mode=rawpy.HighlightMode.Clip,
-        adjust_maximum_thr=0,
-    )
+    linear = {"gamma": (1, 1), "no_auto_bright": True, "user_wb": [1, 1, 1, 1], "adjust_maximum_thr": 0}
+    stored = {"output_color": rawpy.ColorSpace.raw, "highlight_mode": rawpy.HighlightMode.Clip, "user_flip": 0}
+    codes = raw.postprocess(half_size=True, output_bps=16, **linear, **stored)
     light = codes[..., :3].astype(np.float32) / 65535
     return light, np.asarray((light >= SATURATED).any(axis=2))
 

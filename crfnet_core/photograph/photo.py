@@ -1,4 +1,4 @@
-"""A photograph in the encoding of its file, and the integer samples of an encoded image."""
+"""A photograph in the encoding of its file, the integer samples of an encoded image, and the turns of pictures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,17 @@ from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.types import Float32Array
 
 CodeArray = NDArray[np.uint8] | NDArray[np.uint16]
+
+#: a, b, c, d, each -1, 0 or 1: a stored pixel (x, y) belongs at x' = a x + c y, y' = b x + d y, with y downwards.
+Turn: TypeAlias = tuple[int, int, int, int]
+
+UPRIGHT: Turn = (1, 0, 0, 1)
+
+#: EXIF's Orientation -> turn (JEITA CP-3451, 4.6.4).
+EXIF_TURNS: dict[int, Turn] = {
+    **{1: UPRIGHT, 2: (-1, 0, 0, 1), 3: (-1, 0, 0, -1), 4: (1, 0, 0, -1)},
+    **{5: (0, 1, 1, 0), 6: (0, 1, -1, 0), 7: (0, -1, -1, 0), 8: (0, -1, 1, 0)},
+}
 
 
 class Photo:
@@ -156,3 +167,12 @@ class CodeValues:
         pixels = np.zeros(codes.shape, np.float32)
         np.divide(codes, alpha, out=pixels, where=alpha > 0, dtype=np.float32)
         return np.asarray(np.minimum(pixels, 1, out=pixels))
+
+
+def upright(pixels: NDArray[Any], turn: Turn) -> NDArray[Any]:
+    """Return pixels, shape (H, W, ...), turned and mirrored by quarter turns."""
+    a, b, c, d = turn
+    if a == 0:
+        pixels = pixels.swapaxes(0, 1)
+    columns, rows = (c, b) if a == 0 else (a, d)
+    return np.ascontiguousarray(pixels[:: rows or 1, :: columns or 1])

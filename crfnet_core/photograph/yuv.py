@@ -59,11 +59,7 @@ class Coding:
 
     @classmethod
     def from_frame(cls, frame: VideoFrame, *, is_still: bool, codes: Sequence[int] = ()) -> Coding | None:
-        """Return the coding of a decoded frame; None if its matrix or its samples are not read.
-
-        `codes` are matrix and range by the container; they override the frame's. For a still picture (JPEG or AVIF),
-        untagged means BT.601 in full range.
-        """
+        """Return the coding of a decoded frame, by `codes` of its container first; None if its samples are not read."""
         form, bits, lines = frame.format, bit_depth(frame), frame.height
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
             return None
@@ -106,10 +102,8 @@ def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
 def alpha_of(frame: VideoFrame) -> Float32Array | None:
     """Return the alpha channel in [0, 1], shape (H, W); None if there is none."""
     planes = _planes(frame)
-    if len(planes) not in (2, 4):
-        return None
-    alpha: Float32Array = np.divide(planes[-1], np.float32(2 ** bit_depth(frame) - 1), dtype=np.float32)
-    return alpha
+    largest = np.float32(2 ** bit_depth(frame) - 1)
+    return np.asarray(np.divide(planes[-1], largest, dtype=np.float32)) if len(planes) in (2, 4) else None
 
 
 def _planes(frame: VideoFrame) -> list[NDArray[Any]]:

@@ -17,18 +17,5 @@ from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
 from crfnet_core.posterior.verdict import Verdict
 
-__all__ = [
-    "BANK_FILE",
-    "IN_CAMERA",
-    "UNUSUAL",
-    "Evidence",
-    "Family",
-    "LikelyKind",
-    "Posterior",
-    "Prior",
-    "ResponseBank",
-    "Verdict",
-    "independent_fraction",
-    "metadata_factors",
-    "scene_similarities",
-]
+__all__ = ["BANK_FILE", "IN_CAMERA", "UNUSUAL", "Evidence", "Family", "LikelyKind", "Posterior", "Prior"]
+__all__ += ["ResponseBank", "Verdict", "independent_fraction", "metadata_factors", "scene_similarities"]

@@ -1,7 +1,5 @@
 """How far an estimated response is from the true one (CRF-net paper, Sec. 4; equations of docs/METHOD.md)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

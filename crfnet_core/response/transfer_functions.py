@@ -1,7 +1,5 @@
 """Transfer functions that standards define: scene-linear light to encoded values."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

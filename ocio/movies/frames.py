@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import OpenImageIO as oiio
 
-from crfnet_core.photograph.orientation import upright
-from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.photo import Photo, upright
 from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 
 from ..errors import PlateError

@@ -1,7 +1,5 @@
 """The sources of plates, the frames of a movie or image files; and the frames from which a response is estimated."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -63,7 +61,8 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
     candidates = {part[int(place * len(part))]: index for index, part in enumerate(parts) if part for place in PLACES}
     seen: dict[int, Float32Array] = {}
     for number, photo in frames.photos(candidates):
-        glimpse, part = _glimpse(photo), candidates[number]
+        step, part = max(1, max(photo.shape[:2]) // SAMPLES), candidates[number]
+        glimpse = photo[::step, ::step].mean(axis=2)
         is_new = all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in seen.values())
         if part not in seen and is_new and ((glimpse > DARK) & (glimpse < LIGHT)).mean() >= FRACTION:
             seen[part] = glimpse
@@ -80,10 +79,3 @@ def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Itera
         yield number, photo
     if is_empty:
         raise undecodable(frames.movie.path, "none of its frames")
-
-
-def _glimpse(photo: Photo) -> Float32Array:
-    """Return a coarse pick of a frame's brightness, the mean of the channels, shape (h, w)."""
-    step = max(1, max(photo.shape[:2]) // SAMPLES)
-    glimpse: Float32Array = photo[::step, ::step].mean(axis=2)
-    return glimpse

@@ -16,7 +16,7 @@ from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
-from crfnet_core.photograph.orientation import UPRIGHT, Turn
+from crfnet_core.photograph.photo import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
@@ -46,9 +46,11 @@ JPEG_CODECS = ("mjpeg", "mjpegb")
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
 
 #: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one present counts.
-MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
-MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
-FIRMWARE = ("com.apple.quicktime.software",)
+CAMERA = (
+    ("com.apple.quicktime.make", "com.android.manufacturer", "make"),
+    ("com.apple.quicktime.model", "com.android.model", "model"),
+    ("com.apple.quicktime.software",),
+)
 
 #: Metadata by FFmpeg's names, in lower case -> a text in it -> the log curve that it names.
 LOG_TAGS = {
@@ -125,13 +127,9 @@ class MovieStream:
     @property
     def file_metadata(self) -> FileMetadata:
         """The metadata as a photograph's file has it."""
-        width, height = self.picture.size
-        make, model, software = map(self._text, (MAKES, MODELS, FIRMWARE))
-        return FileMetadata(width, height, make, model, software, file_format="movie", color=self.color)
-
-    def _text(self, names: tuple[str, ...]) -> str:
-        """Return the first metadata present, on one line of printable characters."""
-        return one_line(next((self.metadata[name][:LONGEST_TEXT] for name in names if name in self.metadata), ""))
+        found = (next((self.metadata[name] for name in names if name in self.metadata), "") for names in CAMERA)
+        make, model, software = (one_line(text[:LONGEST_TEXT]) for text in found)
+        return FileMetadata(*self.picture.size, make, model, software, file_format="movie", color=self.color)
 
 
 def check_progressive(movie: MovieStream) -> None:

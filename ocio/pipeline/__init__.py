@@ -33,27 +33,7 @@ from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord
 from .run import run_batch
 
-__all__ = [
-    "EstimateBatch",
-    "FileEstimate",
-    "LinearBatch",
-    "OutputPlan",
-    "PhotographRecord",
-    "anchored_exposure",
-    "deliver",
-    "deliver_estimate",
-    "estimate_files",
-    "estimated_light",
-    "find_photographs",
-    "is_pairs",
-    "load_camera_response",
-    "load_network",
-    "load_prior",
-    "photograph_sources",
-    "plan_calibration",
-    "plan_outputs",
-    "response_lut",
-    "response_to_compare",
-    "run_batch",
-    "write_calibration",
-]
+__all__ = ["EstimateBatch", "FileEstimate", "LinearBatch", "OutputPlan", "PhotographRecord", "anchored_exposure"]
+__all__ += ["deliver", "deliver_estimate", "estimate_files", "estimated_light", "find_photographs", "is_pairs"]
+__all__ += ["load_camera_response", "load_network", "load_prior", "photograph_sources", "plan_calibration"]
+__all__ += ["plan_outputs", "response_lut", "response_to_compare", "run_batch", "write_calibration"]

@@ -1,7 +1,5 @@
 """The folder that `crfnet calibrate` writes: LUTs, a config, a sheet and a JSON document; responses to compare with."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

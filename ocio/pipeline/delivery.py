@@ -3,8 +3,6 @@
 The command and the add-on write with `deliver`: all files of a plan appear together, or the folder is as it was.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, replace

@@ -1,7 +1,5 @@
 """The two kinds of batches: photographs with the files of their estimates, and photographs as linear EXR."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The photographs of a batch: found in folders, each once."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Plan the files of an estimate: which there are, and whether they may be written."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass

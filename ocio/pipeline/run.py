@@ -1,7 +1,5 @@
 """Do the tasks of a batch: in processes, recorded as they end, not stopped by a bad file."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterator, Mapping, Sequence

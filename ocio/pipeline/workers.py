@@ -1,7 +1,5 @@
 """Where many photographs are worked on: processes of this machine, or a Dask cluster."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor

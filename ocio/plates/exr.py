@@ -1,7 +1,5 @@
 """The OpenEXR file of a linear plate: its header and its pixels."""
 
-from __future__ import annotations
-
 import mmap
 import re
 import struct
@@ -60,22 +58,17 @@ def linear_header(
             value = one_line(value) if isinstance(value, str) else value
             header.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
     header.attribute("compression", "zips")
-    for name, value in {**_standard_attributes(header), **attributes}.items():
+    standard: dict[str, str | float] = {}
+    for name, others in STANDARD_NAMES.items():
+        found = next((value for other in others if (value := header.getattribute(other))), None)
+        if found is not None:
+            standard[name] = float(found) if name in STANDARD_NUMBERS else str(found)
+    for name, value in {**standard, **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
         else:  # OpenImageIO takes nothing that is not Unicode
             header.attribute(name, value.encode(errors="replace").decode() if isinstance(value, str) else value)
     return header
-
-
-def _standard_attributes(header: Any) -> dict[str, str | float]:
-    """Return the metadata in a header that OpenEXR itself has names for, by these names."""
-    attributes: dict[str, str | float] = {}
-    for name, others in STANDARD_NAMES.items():
-        value = next((value for other in others if (value := header.getattribute(other))), None)
-        if value is not None:
-            attributes[name] = float(value) if name in STANDARD_NUMBERS else str(value)
-    return attributes
 
 
 def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:

@@ -1,7 +1,5 @@
 """Read one frame of a plate: its encoded samples, its alpha and its header; or its color tags alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
@@ -142,27 +140,20 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
         header = source.spec()
         gray = next((name for name in GRAY if name in header.channelnames), "")
         channels = [header.channelindex(name if name in header.channelnames else gray) for name in "RGB"]
-        needed = {*channels, header.alpha_channel} - {-1}
-        planes: dict[int, Any] = {channel: _plane(source, channel) for channel in needed}
+        part, needed = source.current_subimage(), {*channels, header.alpha_channel} - {-1}  # others may be many
+        planes = {channel: source.read_image(part, 0, channel, channel + 1, "float") for channel in needed}
         problem = oiio_message(source)
     if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
-    samples = np.stack([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
+    samples = np.concatenate([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
     if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
         raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
-    alpha = planes[header.alpha_channel]  # (H, W)
+    alpha = planes[header.alpha_channel]  # (H, W, 1)
     if is_divided:
-        covered = alpha[..., None] != 0
-        samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
-    return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
-
-
-def _plane(source: Any, channel: int) -> Float32Array | None:
-    """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
-    return None if plane is None else np.asarray(plane)[..., 0]
+        samples = np.divide(samples, alpha, out=np.zeros_like(samples), where=alpha != 0)
+    return EncodedFrame(samples, 1, alpha[..., 0], header, header_color_tags(header, "OpenEXR"))
 
 
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:

@@ -1,7 +1,5 @@
 """Frame numbers in words: ranges such as 1-9x2, read by Fileseq, which the Blender add-on does without."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Sequence
 from operator import index
 from typing import Any

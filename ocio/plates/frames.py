@@ -1,7 +1,5 @@
 """The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -35,8 +33,7 @@ class FrameSequence:
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
     """Return the files of a single file's name, of a pattern (`FramePattern.parse`), or of a folder with one sequence.
 
-    An existing file of exactly this name is taken first, so it may hold `#` or `@`. Raise a PlateError if there are no
-    `frames`, they are malformed or come with a single file, or the folder has other sequences.
+    An existing file of exactly this name is taken first, so it may hold `#` or `@`.
     """
     path = Path(pattern)
     kind = _kind(path)

@@ -64,8 +64,7 @@ class PlateLight:
 def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
     """Return the stops to add after the inverse response, which leaves the exposure open (Eq. 31 of docs/METHOD.md).
 
-    `gray` is the encoded brightness in (0, 1] of a surface that reflects 18 % of the light; by default brightness 1
-    becomes 1. `response` may be a LUT of the inverse. Raise a LutError if the gray is black.
+    `gray` is the encoded brightness of a surface that reflects 18 % of the light; by default brightness 1 becomes 1.
     """
     if gray is None:
         return stops

@@ -1,7 +1,5 @@
 """Linearize plates: encoded files and frame sequences to scene-linear OpenEXR."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -79,10 +77,9 @@ def linearize_plates(
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
     The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
-    requires of coverage. The output has the same bytes in every run. A target that exists is whole, and is left alone
-    unless `overwrite` is set: the same call resumes an interrupted one, or is refused for another LUT, exposure, space
-    or depth. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any frame is written if
-    the output does not fit the depth or finished frames differ, or at the end if frames failed.
+    requires of coverage. A target that exists is whole, and is left alone unless `overwrite` is set: the same call
+    resumes an interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any
+    frame is written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if workers is not None and workers < 1:

@@ -1,7 +1,5 @@
 """The primaries of an encoded plate, by its tags, as stated or by convention; and the space of its linear values."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,11 +11,9 @@ from crfnet_core.types import Float64Array
 from ..defaults import OUTPUT_SPACES, PRIMARIES
 from ..errors import PlateError
 
-#: The sources of primaries that the user states, and of a file without tags, which is taken for sRGB.
-CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
-
-#: The Color Interop Forum's name of a space that has none, or is not known.
-UNKNOWN = "unknown"
+#: The sources of primaries that the user states, and of a file without tags, which is taken for sRGB; and the Color
+#: Interop Forum's name of a space that has none, or is not known.
+CHOSEN, BY_CONVENTION, UNKNOWN = "as given", "no tag, so by convention", "unknown"
 
 #: The primaries of the output spaces; "plate" keeps the primaries of the plate.
 TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": AP0}

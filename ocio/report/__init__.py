@@ -23,27 +23,7 @@ from .words import (
     verdict_lines,
 )
 
-__all__ = [
-    "Measured",
-    "PhotoFacts",
-    "Phrases",
-    "calibration_document",
-    "calibration_lines",
-    "calibration_provenance",
-    "camera_line",
-    "camera_summary",
-    "comparison_lines",
-    "estimate_document",
-    "file_lines",
-    "light_lines",
-    "lut_document",
-    "lut_lines",
-    "offer_lines",
-    "plate_document",
-    "plate_lines",
-    "provenance",
-    "result_line",
-    "source_line",
-    "verdict_advice",
-    "verdict_lines",
-]
+__all__ = ["Measured", "PhotoFacts", "Phrases", "calibration_document", "calibration_lines", "calibration_provenance"]
+__all__ += ["camera_line", "camera_summary", "comparison_lines", "estimate_document", "file_lines", "light_lines"]
+__all__ += ["lut_document", "lut_lines", "offer_lines", "plate_document", "plate_lines", "provenance", "result_line"]
+__all__ += ["source_line", "verdict_advice", "verdict_lines"]

@@ -45,10 +45,7 @@ CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
 
 
 def draw_calibration(path: Path, calibration: Measured) -> None:
-    """Write the picture of a calibration as PNG; the same input gives the same bytes.
-
-    Raise PlateError if that fails.
-    """
+    """Write the picture of a calibration as PNG, or raise PlateError; the same input gives the same bytes."""
     with sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)

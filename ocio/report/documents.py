@@ -27,10 +27,7 @@ QUARTERS = (0.25, 0.5, 0.75)
 def estimate_document(
     estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles, light: PlateLight
 ) -> dict[str, Any]:
-    """Return the document of an estimate with its photographs and files, ready for JSON; see `to_dict`.
-
-    File names are relative to the folder.
-    """
+    """Return an estimate (`to_dict`), its photographs and its files, named relative to the folder, ready for JSON."""
     return {
         **estimate.to_dict(),
         "photographs": [vars(photo) for photo in photos],

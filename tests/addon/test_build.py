@@ -9,7 +9,6 @@ import sys
 import tomllib
 
 import pytest
-from packaging.version import Version
 
 from blender_addon import build
 
@@ -132,11 +131,4 @@ def test_the_build_of_our_wheel_changes_with_its_sources(tmp_path):
         digests.append(build._digest((tmp_path / name).parent))
     assert digests[0] == digests[1]
     assert len(set(digests)) == 3, "the content and the name count"
-
-
-def test_the_version_of_a_build_stays_as_it_is(tmp_path, monkeypatch):
-    """A hash of digits alone would lose its leading zeros."""
-    zeros = type("Hash", (), {"hexdigest": lambda self: "04351917" * 8})
-    monkeypatch.setattr(build.hashlib, "sha256", lambda _content: zeros())
-    version = f"0.1.0+{build._digest(tmp_path)}"
-    assert str(Version(version)) == version
+    assert all(digest.startswith("h") for digest in digests), "versions drop leading zeros of numbers"

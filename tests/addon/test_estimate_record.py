@@ -40,17 +40,13 @@ def test_an_estimate_comes_back_the_same(found):
     assert [type(origin.device) for origin in again.origins] == [Device, Device]
 
 
-def test_what_the_metadata_says_may_hold_any_character(found):
+def test_texts_of_any_characters_come_back(found):
     odd = dataclasses.replace(found.origins[0], editor='a "写真" \\ editor', words=("saved by 写真", "scaled"))
-    again = estimate_of(entries_of(dataclasses.replace(found, origins=(odd,))))
-    assert again.origins == (odd,)
-
-
-def test_a_recognition_and_a_stored_camera_come_back(found):
     recognition = Recognition(Kind.LOG_FOOTAGE, "codes end at 16", 'give it "写真"', curves=("Sony S-Log3",))
     camera = CameraAnswer("写真機", "measured from 6 exposures")
-    again = estimate_of(entries_of(dataclasses.replace(found, recognition=recognition, camera=camera)))
-    assert (again.recognition, again.camera) == (recognition, camera)
+    texts = {"origins": (odd,), "recognition": recognition, "camera": camera}
+    again = estimate_of(entries_of(dataclasses.replace(found, **texts)))
+    assert {name: getattr(again, name) for name in texts} == texts
     assert again.recognition.kind is Kind.LOG_FOOTAGE
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon.work.errors import AddonError
-from blender_addon.work.frame_files import frame_reader, frames_of, sample
+from blender_addon.work.frame_files import frame_reader, frames_of
 from blender_addon.work.job import ApplyMode
 from blender_addon.work.run import run
 from crfnet_core.photograph.image_io import read_codes
@@ -60,10 +60,6 @@ def test_no_room_for_a_temporary_file_is_one_sentence(make_job, tmp_path, monkey
     plate = dataclasses.replace(make_job().plate, content=b"packed")
     with pytest.raises(AddonError, match="no temporary file can be written"), frame_reader(plate):
         pass
-
-
-def test_frames_of_a_sequence_keep_their_numbers(make_job, sequence_file):
-    assert sample(frames_of(make_job(sequence_file, is_sequence=True).plate)).numbers == (1, 2, 3, 5, 6, 7, 8, 9)
 
 
 def test_a_movie_is_estimated_from_the_frame_shown(movie_job, temporary):

@@ -14,7 +14,6 @@ from blender_addon.work.run import run
 from crfnet.errors import LutError, PlateError
 from crfnet.pipeline import estimates
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
-from crfnet_core.errors import ModelError
 from crfnet_core.network import ResponseNetwork
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import write_image
@@ -120,10 +119,8 @@ def test_a_cancelled_job_ends_before_the_network_is_loaded(make_job, calls):
     assert loads == []
 
 
-def test_a_missing_plate_and_a_missing_model_are_told(make_job, tmp_path, plate_file):
+def test_a_missing_plate_is_told(make_job, plate_file):
     job = make_job()
     plate_file.unlink()
     with refused(PlateError, "no_such_plate"):
         run(job)
-    with refused(ModelError, "unreadable_model"):
-        estimates.load_network(type(job.estimation.options)(model=tmp_path))

@@ -69,7 +69,7 @@ def estimated(image):
 @pytest.fixture
 def tree(addon):
     """The scene's compositor tree."""
-    from blender_addon.scene.compositor import compositor_tree
+    from blender_addon.scene.nodes.compositor import compositor_tree
 
     return compositor_tree(bpy.context.scene)
 
@@ -136,7 +136,7 @@ def rendered_anew(tmp_path, root):
 
 def rendered(scene, path, size, *, has_render=False):
     """Render a scene's compositor to an EXR file and return its pixels; of the scene, nothing by default."""
-    from blender_addon.scene.compositor import compositor_tree
+    from blender_addon.scene.nodes.compositor import compositor_tree
 
     render = scene.render
     render.resolution_x, render.resolution_y = size

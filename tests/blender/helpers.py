@@ -11,7 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 from blender_addon.scene import plates as plates  # noqa: E402 - after the skip
 from blender_addon.scene import stored_estimate as stored_estimate  # noqa: E402
-from blender_addon.scene.compositor import compositor_tree as compositor_tree  # noqa: E402
+from blender_addon.scene.nodes.compositor import compositor_tree as compositor_tree  # noqa: E402
 
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 

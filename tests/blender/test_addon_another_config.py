@@ -9,6 +9,14 @@ pytestmark = pytest.mark.usefixtures("estimated")
 
 ACES = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1"
 
+APPEND = """
+with bpy.data.libraries.load({other!r}, link={link}) as (source, here):
+    here.node_groups = [name for name in source.node_groups if "Response" in name]
+    here.images = [name for name in source.images if "code values" in name]
+(convert,) = (node for node in here.node_groups[0].nodes if node.bl_idname.endswith("ConvertColorSpace"))
+print("imported:", convert.from_color_space + ",", here.images[0].colorspace_settings.name)
+"""
+
 SAVE = "bpy.ops.wm.save_as_mainfile(filepath={!r})"
 
 
@@ -34,3 +42,13 @@ def test_they_give_the_same_light(image, composited, rendered_anew, codes, tmp_p
         assert np.abs(composited(group_node("Look").outputs["Code Values"])[..., :3] - codes / 255).max() < 1e-5
     light = curve_of(bpy.data.images["plate.png"]).inverse(codes / 255)
     assert np.abs(composited(group_node("Response").outputs[0])[..., :3] - light).max() < 1e-5
+
+
+@pytest.mark.parametrize("link", [False, True])
+def test_appended_and_linked_nodes_get_the_names_of_the_config(image, composited, rendered_anew, tmp_path, link):
+    apply(image)
+    composited(group_node().outputs[0])
+    other = str(tmp_path / "other.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=other, copy=True)
+    _, log = rendered_anew(ACES, APPEND.format(other=other, link=link))
+    assert "imported: Linear Rec.709 (sRGB), Raw" in log

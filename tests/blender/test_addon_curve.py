@@ -14,7 +14,7 @@ FIRST, STOPS = 8, {255: 1e-3, 1023: 1e-2}
 @pytest.fixture
 def decoded(addon, tree, composited, tmp_path):
     """What the node group of a curve makes of brightnesses."""
-    from blender_addon.scene import node_group
+    from blender_addon.scene.nodes import plate_group
 
     path = write_image(tmp_path / "plate.png", np.zeros((8, 8, 3), np.uint8))
     plate = bpy.data.images.load(str(path))
@@ -22,7 +22,7 @@ def decoded(addon, tree, composited, tmp_path):
     node = tree.nodes.new("CompositorNodeGroup")
 
     def run(curve, brightness):
-        node.node_tree = node_group.build_group(plate, "plate", curve, 0)
+        node.node_tree = plate_group.build_group(plate, "plate", curve, 0)
         pixels = np.tile(np.asarray(brightness, np.float32)[:, None], (8, 1, 3))
         if source.image:
             bpy.data.images.remove(source.image)

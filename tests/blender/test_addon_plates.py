@@ -59,6 +59,15 @@ def test_errors_name_a_packed_plate_and_not_the_temporary_file(addon, tmp_path, 
         bpy.ops.crf.estimate_response(image=image.name)
 
 
+def test_a_picture_of_two_eyes_is_refused(addon, tmp_path, codes):
+    """Baked, it would be one picture of double width."""
+    image = load(write_image(tmp_path / "eyes.png", codes))
+    image.use_multiview, image.views_format = True, "STEREO_3D"
+    assert "untick Use Multi-View" in plates.obstacle(image)
+    with pytest.raises(RuntimeError, match="two eyes"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
 def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes, in_editor):
     from blender_addon.work.frame_files import frames_of
 

@@ -49,13 +49,13 @@ def group_with(tree, image):
 
 class TestTwoPlatesOfOneName:
     def test_they_have_two_groups_and_two_luts(self, twins, tree, composited, codes, monkeypatch):
-        from blender_addon.scene import node_group
+        from blender_addon.scene.nodes import plate_group
         from crfnet_core import ResponseCurve
 
         curves = {image: ResponseCurve.gamma(gamma) for image, gamma in zip(twins, (2.6, 1.8), strict=True)}
-        build = node_group.build_group
+        build = plate_group.build_group
         monkeypatch.setattr(
-            node_group, "build_group", lambda plate, name, _curve, stops: build(plate, name, curves[plate], stops)
+            plate_group, "build_group", lambda plate, name, _curve, stops: build(plate, name, curves[plate], stops)
         )
         for image in twins:
             run(image, "NODES")
@@ -144,7 +144,7 @@ class TestNothingIsLinearizedTwice:
             tree.links.new(source.outputs["Image"], holder.inputs[0])
             tree.nodes.remove(group)
             edited, expected = tree, 1  # the user's own
-        from blender_addon.scene import compositor
+        from blender_addon.scene.nodes import compositor
 
         wanted = compositor.PlateNodes(
             plate=image,

@@ -16,7 +16,7 @@ def words_on(image, in_editor):
 
 
 def twice(image):
-    from blender_addon.scene.node_links import linearized_twice
+    from blender_addon.scene.nodes.links import linearized_twice
 
     return linearized_twice(image)
 
@@ -66,7 +66,7 @@ def test_the_look_of_another_scene_keeps_its_exposure(image):
 
 def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):
     """Nor are the nodes behind them; those that are linked inside and outside are."""
-    from blender_addon.scene.node_links import nodes_behind
+    from blender_addon.scene.nodes.links import nodes_behind
 
     mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
     for in_out in ("INPUT", "OUTPUT"):
@@ -98,7 +98,7 @@ def chained_groups(tree):
 
 
 def test_what_the_second_of_two_chained_nodes_holds_is_behind_what_the_first_holds(addon, tree):
-    from blender_addon.scene.node_links import nodes_behind
+    from blender_addon.scene.nodes.links import nodes_behind
 
     mine, first, second = chained_groups(tree)
     start, before, behind, end = (

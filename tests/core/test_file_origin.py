@@ -40,9 +40,7 @@ def test_shape_of_the_picture(width, height, shape):
         (2000, 2000, OWN_CAMERA | {"exif_size": (3504, 2336)}, None),  # cut
         (1024, 683, OWN_CAMERA | {"exif_size": (1024, 683), "software": "GIMP 2.8"}, True),
         (6000, 4000, OWN_CAMERA | {"exif_size": (6000, 4000), "software": "GIMP 2.8"}, False),
-        (5168, 3448, {}, False),
-        (4240, 2830, {}, None),
-        (2048, 1536, {}, True),
+        *((5168, 3448, {}, False), (4240, 2830, {}, None), (2048, 1536, {}, True)),
         (2048, 1536, {"make": "Sony", "model": "D6503"}, None),
         (1280, 720, {}, True),
         (1280, 720, {"file_format": "DPX"}, None),
@@ -65,20 +63,14 @@ IJG_FINE = {"luma_table": scaled_table(ANNEX_K_LUMA, 99)}
 @pytest.mark.parametrize(
     ("fields", "is_resaved"),
     [
-        (OWN_CAMERA, False),
-        (OWN_CAMERA | IJG_FINE, False),
+        *((OWN_CAMERA, False), (OWN_CAMERA | IJG_FINE, False)),
         (OWN_CAMERA | IJG, None),  # some cameras use the tables of the library
         (OWN_CAMERA | {"has_jfif": True}, None),  # or a program turned it without loss
         (OWN_CAMERA | IJG | {"has_jfif": True}, True),
         (IJG | {"make": "Apple", "model": "iPhone 6", "has_jfif": True}, None),
-        (OWN_CAMERA | {"has_adobe": True}, True),
-        (OWN_CAMERA | {"software": "darktable 3.4"}, True),
-        (OWN_CAMERA | {"exif_size": (7008, 4672)}, True),
-        (IJG, True),
-        (IJG_FINE, None),
-        ({"luma_table": OWN_TABLE}, None),
-        ({}, None),
-        ({"file_format": "PNG"}, None),
+        *((OWN_CAMERA | {"has_adobe": True}, True), (OWN_CAMERA | {"software": "darktable 3.4"}, True)),
+        *((OWN_CAMERA | {"exif_size": (7008, 4672)}, True), (IJG, True), (IJG_FINE, None)),
+        *(({"luma_table": OWN_TABLE}, None), ({}, None), ({"file_format": "PNG"}, None)),
     ],
 )
 def test_saved_again_or_not(fields, is_resaved):

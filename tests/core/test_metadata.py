@@ -14,6 +14,7 @@ from crfnet_core.photograph.metadata.jpeg import (
 from crfnet_core.photograph.metadata.origin import ADOBE
 from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 EXIF = {
     "Make": "Canon",
@@ -123,6 +124,5 @@ def test_metadata_alone_is_read_without_the_pixels(tmp_path):
     path = write_image(tmp_path / "a.png", noise, Make="Canon")
     path.write_bytes(path.read_bytes()[:-4000])
     assert read_metadata(path).make == "Canon"
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "damaged"):
         read_photo(path)
-    assert caught.value.code == "damaged"

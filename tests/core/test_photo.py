@@ -15,6 +15,7 @@ from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.crafted_files import jpeg, png, png_chunk
 from tests.helpers.images import read_image, write_image
 from tests.helpers.memory import memory_of_reading
+from tests.helpers.refusals import refused
 
 CODES8 = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 CODES16 = np.array([[[0, 1, 2], [32767, 32768, 32769]], [[65533, 65534, 65535], [100, 200, 300]]], np.uint16)
@@ -160,9 +161,8 @@ def test_a_damaged_ultra_hdr_photograph_is_named_itself(ultra_hdr):
     whole = ultra_hdr.read_bytes()
     middle = (whole.index(b"\xff\xda") + whole.index(b"\xff\xd9")) // 2
     ultra_hdr.write_bytes(whole[:middle] + b"\xff\xd9" + whole[middle + 2 :])
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "damaged", path=ultra_hdr):
         read_photo(ultra_hdr)
-    assert (caught.value.code, caught.value.facts["path"]) == ("damaged", ultra_hdr)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
@@ -175,9 +175,8 @@ def test_memory_is_the_codes_alone(tmp_path):
 
 @pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text")])
 def test_other_sources_are_refused(source):
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "photograph_source"):
         read_photo(source)
-    assert caught.value.code == "photograph_source"
 
 
 def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
@@ -205,15 +204,13 @@ def test_a_file_that_cannot_be_read_is_refused(problem):
         def read(self, size=-1):
             raise problem
 
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "cannot_open_photograph"):
         read_photo(Broken())
-    assert caught.value.code == "cannot_open_photograph"
 
 
 def test_an_error_of_bytes_names_no_temporary_file():
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "not_an_image_file", path=Path("bytes")):
         read_photo(b"a.png")
-    assert (caught.value.code, caught.value.facts) == ("not_an_image_file", {"path": Path("bytes")})
 
 
 @pytest.mark.parametrize("is_associated", [False, True])

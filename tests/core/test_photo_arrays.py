@@ -9,6 +9,7 @@ from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.photo import Photo
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 ALPHA = np.array([[[255], [255]], [[0], [128]]], np.uint8)
@@ -46,6 +47,12 @@ def test_the_order_of_the_channels_is_as_stated(array, order):
     assert not photo.is_gray
 
 
+def test_a_file_that_is_mapped_into_memory_is_an_array(tmp_path):
+    CODES.tofile(tmp_path / "codes")
+    mapped = np.memmap(tmp_path / "codes", CODES.dtype, "r", shape=CODES.shape)
+    np.testing.assert_array_equal(Photo.from_array(mapped, color_order="RGB").pixels, EXACT)
+
+
 @pytest.mark.parametrize("bits", [10, 12, 16])
 def test_uint16_is_divided_by_the_largest_code_of_its_bit_depth(bits):
     codes = np.array([[[0, 1, 2**bits - 1]]], np.uint16)
@@ -71,9 +78,7 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
 @pytest.mark.parametrize(
     ("mode", "array"),
     [
-        ("RGB", CODES),
-        ("RGBA", with_alpha(CODES)),
-        ("L", CODES[..., 0]),
+        *(("RGB", CODES), ("RGBA", with_alpha(CODES)), ("L", CODES[..., 0])),
         ("LA", np.concatenate([CODES[..., :1], ALPHA], 2)),
     ],
 )
@@ -141,6 +146,5 @@ def test_other_arrays_are_refused(array, options, code):
     ],
 )
 def test_the_constructor_checks_its_pixels(pixels, code):
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, code):
         Photo(pixels, 8, False, Path("a.png"))
-    assert caught.value.code == code

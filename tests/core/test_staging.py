@@ -12,6 +12,7 @@ import pytest
 
 from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.staging import remove_abandoned, staged_files
+from tests.helpers.refusals import refused
 
 
 def content(folder):
@@ -27,19 +28,10 @@ def test_files_take_their_names_together(tmp_path):
     assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
 
 
-def write(folder, names, *, problem=None):
+def write(folder, names):
     with staged_files(folder) as staged:
         for name in names:
             (staged / name).write_text("new")
-        if problem:
-            raise problem(f"{staged / names[-1]}: no room")
-
-
-def test_a_failed_block_leaves_the_folder_as_it_was(tmp_path):
-    (tmp_path / "a.txt").write_text("old")
-    with pytest.raises(ZeroDivisionError):
-        write(tmp_path, ["a.txt"], problem=ZeroDivisionError)
-    assert content(tmp_path) == {"a.txt": "old"}
 
 
 def test_errors_keep_their_class_code_and_facts_and_name_the_final_file(tmp_path):
@@ -77,9 +69,8 @@ def test_what_is_not_on_the_disk_is_not_there(tmp_path, monkeypatch, number):
         real(descriptor)
 
     monkeypatch.setattr(os, "fsync", fail)
-    with pytest.raises(CRFNetError) as caught:
+    with refused(CRFNetError, "not_written"):
         write(tmp_path, ["a.txt", "b.txt"])
-    assert caught.value.code == "not_written"
     assert content(tmp_path) == {"a.txt": "old"}
 
 
@@ -106,39 +97,30 @@ def test_an_interruption_at_any_moment_leaves_the_folder_as_it_was(tmp_path, mon
     assert content(tmp_path) == {"a.txt": "old", "c.txt": "old"}
 
 
-def left_by_a_killed_run(folder, files):
-    """Make a temporary folder with earlier files that no process has locked."""
+def left_by_a_killed_run(folder, earlier, staged=""):
+    """Make a temporary folder of a set of three with earlier and new files, which no process has locked."""
     temporary = folder / ".crfnet-killed"
     (temporary / ".crfnet-earlier-3").mkdir(parents=True)
-    for name, text in files.items():
-        (temporary / ".crfnet-earlier-3" / name).write_text(text)
-    return temporary
+    for name in earlier:
+        (temporary / ".crfnet-earlier-3" / name).write_text("old")
+    for name in staged:
+        (temporary / name).write_text("new")
 
 
-def test_earlier_files_of_killed_runs_go_back_where_there_is_none(tmp_path):
-    left_by_a_killed_run(tmp_path, {"a.txt": "old", "b.txt": "old"})
-    (tmp_path / "b.txt").write_text("new")
-    with staged_files(tmp_path):
-        pass
-    assert content(tmp_path) == {"a.txt": "old", "b.txt": "new"}
-
-
-def test_a_set_that_a_killed_run_named_in_part_is_completed_where_names_are_free(tmp_path):
-    temporary = left_by_a_killed_run(tmp_path, {"a.txt": "old"})
-    for name in "ab":
-        (temporary / f"{name}.txt").write_text("new")
-    (tmp_path / "c.txt").write_text("new")
+@pytest.mark.parametrize(
+    ("earlier", "staged", "there", "expected"),
+    [
+        ("ab", "", "b", {"a": "old", "b": "new"}),  # earlier files go back where there is none
+        ("a", "ab", "c", {"a": "new", "b": "new", "c": "new"}),  # a set that has a name gets the others
+        ("", "abc", "", {}),  # else the same command writes it again, and would refuse files that are there
+    ],
+)
+def test_a_set_of_a_killed_run_is_completed_or_taken_back(tmp_path, earlier, staged, there, expected):
+    left_by_a_killed_run(tmp_path, earlier, staged)
+    for name in there:
+        (tmp_path / name).write_text("new")
     remove_abandoned(tmp_path)
-    assert content(tmp_path) == {"a.txt": "new", "b.txt": "new", "c.txt": "new"}
-
-
-def test_a_set_of_which_a_killed_run_named_no_file_is_removed(tmp_path):
-    """The same command writes it again, and would refuse files that are there."""
-    temporary = left_by_a_killed_run(tmp_path, {})
-    for name in "abc":
-        (temporary / f"{name}.txt").write_text("new")
-    remove_abandoned(tmp_path)
-    assert content(tmp_path) == {}
+    assert content(tmp_path) == expected
 
 
 @pytest.mark.parametrize("is_own", [False, True])
@@ -147,7 +129,7 @@ def test_an_earlier_file_that_cannot_go_back_stays_where_it_is(tmp_path, monkeyp
     if is_own:
         (tmp_path / "a.txt").write_text("old")
     else:
-        left_by_a_killed_run(tmp_path, {"a.txt": "old"})
+        left_by_a_killed_run(tmp_path, ["a.txt"])
     replace = Path.replace
 
     def refuse(path, target):
@@ -216,7 +198,6 @@ def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path):
             (staged / "b.txt").write_text("new")
             (tmp_path / "b.txt").write_text("theirs")
 
-    with pytest.raises(CRFNetError) as caught:
+    with refused(CRFNetError, "written_meanwhile", path=tmp_path / "b.txt"):
         write_beside()
-    assert (caught.value.code, caught.value.facts["path"]) == ("written_meanwhile", tmp_path / "b.txt")
     assert content(tmp_path) == {"b.txt": "theirs"}

@@ -1,7 +1,5 @@
 """A plate's color space, and pixels through OpenColorIO."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Raw files of known cameras with the JPEGs that they make: a mosaic of linear light, and the same light rendered."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,46 +15,22 @@ from tests.helpers.linear_pictures import CAMERAS, XYZ, write_dng
 
 @dataclass(frozen=True, kw_only=True)
 class PairOptions:
-    """How a pair is taken.
-
-    Parameters
-    ----------
-    camera, light : str, sequence of float
-        The colors of the sensor, and of the light.
-    primaries : Primaries
-        Of the JPEG.
-    brightest : float
-        Percentile of the scene that saturates the sensor.
-    headroom : float
-        Stops by which the JPEG's white is below saturation.
-    crop, distortion : float
-        Part of the raw picture's width that the JPEG leaves out, and of its distance that a correction moves a corner.
-    vignetting : float
-        Stops that the lens takes from the corners, and the JPEG gives back.
-    local, reach : float
-        Exponent of the surroundings' light in local tone mapping, and their width as a part of the picture's.
-    saturation : float
-        Factor on the colors.
-    shot_noise, read_noise : float
-        Variance of the noise at saturation, and standard deviation of what does not depend on light.
-    quality : int
-        Of the JPEG, which is 4:2:2.
-    """
+    """How a pair is taken."""
 
     camera: str = "one"
-    light: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    primaries: Primaries = REC709
-    brightest: float = 99.5
-    headroom: float = 0.3
-    crop: float = 0.01
-    distortion: float = 0.0
-    vignetting: float = 0.0
-    local: float = 0.0
-    reach: float = 1 / 20
-    saturation: float = 1.0
-    shot_noise: float = 1e-4
-    read_noise: float = 3e-4
-    quality: int = 88
+    light: tuple[float, float, float] = (1.0, 1.0, 1.0)  # its color
+    primaries: Primaries = REC709  # of the JPEG
+    brightest: float = 99.5  # percentile of the scene that saturates the sensor
+    headroom: float = 0.3  # stops by which the JPEG's white is below saturation
+    crop: float = 0.01  # part of the raw picture's width that the JPEG leaves out
+    distortion: float = 0.0  # part of its distance from the center by which a correction moves a corner
+    vignetting: float = 0.0  # stops that the lens takes from the corners, and the JPEG gives back
+    local: float = 0.0  # exponent of the surroundings' light in local tone mapping
+    reach: float = 1 / 20  # width of these surroundings, as a part of the picture's
+    saturation: float = 1.0  # factor on the colors
+    shot_noise: float = 1e-4  # variance at saturation
+    read_noise: float = 3e-4  # standard deviation
+    quality: int = 88  # of the JPEG, which is 4:2:2
     seed: int = 0
 
 
@@ -99,7 +73,7 @@ def rendered(light: NDArray[np.float64], response: ResponseCurve, options: PairO
     return np.clip(brightness + 0.5 * (brightness - gaussian_filter(brightness, (0.8, 0.8, 0))), 0, 1)
 
 
-def radii(light: NDArray[np.float32]) -> NDArray[np.float64]:
+def radii(light: NDArray[np.floating]) -> NDArray[np.float64]:
     """Return each pixel's distance from the center, 1 at a corner."""
     height, width = light.shape[:2]
     y, x = np.mgrid[:height, :width]

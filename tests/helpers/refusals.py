@@ -1,7 +1,5 @@
 """Refusals: errors by their kind, code and facts, whatever their sentences are."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 

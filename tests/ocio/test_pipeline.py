@@ -1,9 +1,7 @@
 """The steps that command and add-on share: estimates, exposure, and files that are written together or not at all."""
 
-import dataclasses
 import errno
 import json
-import shutil
 import sys
 from pathlib import Path
 
@@ -13,22 +11,20 @@ import pytest
 from crfnet import pipeline
 from crfnet.cli.main import main
 from crfnet.configs.plate_color_space import PlateColorSpace
-from crfnet.defaults import FRAMES_ANALYZED, LUT_LENGTH
-from crfnet.errors import LutError, PlateError
+from crfnet.defaults import LUT_LENGTH
+from crfnet.errors import PlateError
 from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet.options import EstimateOptions, OutputOptions, PlateOptions
 from crfnet.output_files import OutputFiles
 from crfnet.pipeline import estimates
-from crfnet.plates.frames import FrameSequence, find_frames
+from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
-from crfnet.plates.linear import linear_targets
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family
 from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.folders import listed
 from tests.helpers.refusals import refused
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
@@ -38,12 +34,9 @@ class CancelledError(Exception):
     """What a program of its own raises in a progress callback."""
 
 
-def cancel_after(frames):
-    def progress(done, total):
-        if done >= frames:
-            raise CancelledError
-
-    return progress
+def cancel(done, total):
+    if done:
+        raise CancelledError
 
 
 @pytest.fixture(scope="module")
@@ -51,23 +44,7 @@ def options(fixed_model):
     return EstimateOptions(model=fixed_model, analysis=AnalysisOptions(windows=2))
 
 
-@pytest.fixture
-def sequence(plate, tmp_path):
-    for number in range(1, 13):
-        shutil.copy(plate, tmp_path / f"shot.{number:04d}.jpg")
-    return find_frames(tmp_path / "shot.####.jpg")
-
-
 class TestEstimates:
-    def test_several_frames_stand_for_a_sequence(self, sequence, options):
-        calls = []
-        found = pipeline.estimate_files([sequence], options, progress=lambda *call: calls.append(call))
-        assert len(found.estimate.photos) == len(found.photographs) == FRAMES_ANALYZED
-        assert (found.estimate.photos[0], found.estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
-        assert [facts.plate.paths[0].name for facts in found.firsts] == ["shot.0001.jpg"]
-        assert len(found.estimate.windows) == 2 * FRAMES_ANALYZED
-        assert calls[-1][0] == calls[-1][1]
-
     def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
         found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
         assert [str(facts.report) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
@@ -76,77 +53,17 @@ class TestEstimates:
 
     def test_what_the_callback_raises_ends_the_estimate(self, plate, options):
         with pytest.raises(CancelledError):
-            pipeline.estimate_files([FrameSequence((plate,))], options, progress=cancel_after(1))
-
-    def test_the_prior_and_the_metadata_follow_the_options(self, plate, options, tmp_path):
-        (tmp_path / "film only.json").write_text('{"shares": {"film": 1}, "evidence": 0.5}')
-        analysis = dataclasses.replace(options.analysis, use_metadata=False)
-        asked = dataclasses.replace(options, prior=tmp_path / "film only.json", analysis=analysis)
-        found = pipeline.estimate_files([FrameSequence((plate,))], asked).estimate
-        assert (found.prior, found.origins) == ("film only", ())
-        assert found.families[Family.FILM] == pytest.approx(1)
-        default = pipeline.estimate_files([FrameSequence((plate,))], options).estimate
-        assert (default.prior, [origin.jpeg_quality for origin in default.origins]) == ("camera", [95])
+            pipeline.estimate_files([FrameSequence((plate,))], options, progress=cancel)
 
 
-class TestExposure:
-    def test_white_is_the_anchor_unless_a_gray_is_given_which_becomes_018(self):
-        curve = ResponseCurve.gamma(2.2)
-        assert pipeline.anchored_exposure(curve, stops=1.5) == 1.5
-        stops = pipeline.anchored_exposure(curve, gray=0.5, stops=1)
-        assert curve.inverse(0.5) * 2 ** (stops - 1) == pytest.approx(0.18)
-
-    def test_the_gray_of_three_tables_is_that_of_green(self):
-        red, green, blue = (inverse_response_lut(ResponseCurve.gamma(power), length=256) for power in (1.8, 2.2, 2.6))
-        stops = pipeline.anchored_exposure(RgbLut1D((red, green, blue)), gray=0.5)
-        assert float(green.apply(0.5)) * 2**stops == pytest.approx(0.18)
-
-    def test_black_is_no_anchor(self):
-        with refused(LutError, "gray_is_black"):
-            pipeline.anchored_exposure(ResponseCurve.gamma(2.2), gray=0.0)
+def test_the_gray_of_three_tables_is_that_of_green():
+    red, green, blue = (inverse_response_lut(ResponseCurve.gamma(power), length=256) for power in (1.8, 2.2, 2.6))
+    stops = pipeline.anchored_exposure(RgbLut1D((red, green, blue)), gray=0.5)
+    assert float(green.apply(0.5)) * 2**stops == pytest.approx(0.18)
 
 
 def light_of(lut, **options):
     return PlateLight.from_tags(ColorTags(), lut, PlateOptions(**options))
-
-
-def bake(sequence, targets, lut, options, *, progress=None):
-    files = dataclasses.replace(OutputFiles.named(targets[0].parent, [Path("plate.png")]), linear=tuple(targets))
-    plan = pipeline.OutputPlan(files, options, lut_length=0)
-    pipeline.deliver(plan, light_of(lut), [sequence], progress=progress)
-
-
-class TestLinearFrames:
-    def test_writes_every_frame_into_a_new_folder(self, sequence, tmp_path):
-        calls = []
-        targets = linear_targets(tmp_path / "new" / "deep" / "lin.%04d.exr", sequence)
-        bake(sequence, targets, LUT, PlateOptions(), progress=lambda *call: calls.append(call))
-        assert listed(tmp_path / "new" / "deep") == [f"lin.{number:04d}.exr" for number in range(1, 13)]
-        assert calls[-1] == (12, 12)
-
-    @pytest.mark.parametrize("done", [0, 3])
-    def test_a_cancelled_run_leaves_nothing(self, sequence, tmp_path, done):
-        targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
-        with pytest.raises(CancelledError):
-            bake(sequence, targets, LUT, PlateOptions(), progress=cancel_after(done))
-        assert not (tmp_path / "new").exists()
-
-    def test_a_bad_frame_leaves_nothing(self, sequence, tmp_path):
-        sequence.paths[4].write_bytes(b"no picture")
-        targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
-        with refused(PlateError, "frames_failed", count=1):
-            bake(sequence, targets, LUT, PlateOptions())
-        assert not (tmp_path / "new").exists()
-
-    @pytest.mark.parametrize("step", ["pathlib.Path.mkdir", "tempfile.mkdtemp"])
-    def test_a_folder_that_cannot_be_made_or_written_to_is_refused(self, tmp_path, monkeypatch, step):
-        def refuse(*_arguments, **_options):
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-        monkeypatch.setattr(step, refuse)
-        with refused(PlateError, "folder_not_written", path=tmp_path / "new", reason="No space left on device"):
-            bake(FrameSequence(()), [tmp_path / "new" / "lin.exr"], LUT, PlateOptions())
-        assert not (tmp_path / "new").exists()
 
 
 class TestExport:
@@ -179,6 +96,16 @@ class TestExport:
         with refused(PlateError, "variables_in_path"):
             pipeline.deliver(self.planned(tmp_path / "projects$"), light_of(LUT))
         assert not (tmp_path / "projects$").exists()
+
+    @pytest.mark.parametrize("step", ["pathlib.Path.mkdir", "tempfile.mkdtemp"])
+    def test_a_folder_that_cannot_be_made_or_written_to_is_refused(self, plan, tmp_path, monkeypatch, step):
+        def refuse(*_arguments, **_options):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(step, refuse)
+        with refused(PlateError, "folder_not_written", path=tmp_path / "look", reason="No space left on device"):
+            pipeline.deliver(plan, light_of(LUT))
+        assert not (tmp_path / "look").exists()
 
     @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
     def test_a_failure_in_the_middle_leaves_nothing(self, plan, monkeypatch, problem):

@@ -1,10 +1,14 @@
 import csv
+import re
 
 import numpy as np
 import pytest
 
 from crfnet_core import ResponseCurve
 from crfnet_core.library import camera_estimate
+from crfnet_core.response.metrics import shape_error
+from tests.helpers.pairs import PairOptions, make_pair
+from tests.helpers.stacks import light_of
 from training.export.cameras import measured_cameras
 
 ROW = {
@@ -81,3 +85,16 @@ def test_a_reason_for_caution_is_kept(cameras):
     (camera,) = cameras({"use": "caution: few frames", "exif_make": "", "exif_model": ""})
     assert camera.warnings == ("measured with caution: few frames",)
     assert camera.settings.camera == "NIKON D90"
+
+
+def test_raw_files_become_a_camera_with_a_grade(tmp_path, root, true_response):
+    folder = tmp_path / "raw_pairs"
+    (tmp_path / "real_bodies").mkdir()
+    (tmp_path / "real_bodies" / "cases.csv").write_text(",".join(ROW) + "\n")
+    folder.mkdir()
+    scene = light_of(root / "tests" / "data" / "lights" / "interior.exr")
+    for number in (1, 2):
+        make_pair(folder, scene, true_response, PairOptions(seed=number, brightest=97.5 + number), f"{number}")
+    (camera,) = measured_cameras(tmp_path)
+    assert re.fullmatch(r"2 raw files \(grade [ABC], white by .+\)", camera.source)
+    assert shape_error(true_response, camera.curve) < camera.shape_stops

@@ -10,38 +10,28 @@ from training.crfnet2017.network import CRFNet
 
 @dataclass(frozen=True)
 class Recipe:
-    """How the weights of a stage are trained.
+    """How the weights of a stage are trained."""
 
-    steps: steps of the whole stage
-    optimizer: "sgd" (with `momentum`) or "adamw"
-    learning_rate: the highest of the schedule
-    step_size: steps after which the learning rate falls to a tenth, again and again; 0 for one cycle: up for a tenth of
-        the steps, down as a cosine to 0
-    head_factor: factor on the learning rate of the last layer, small because 270 848 inputs move each of its outputs
-        together
-    batch: windows of a step
-    mixed: whether to compute in bfloat16 where that is safe
-    clip: largest norm of the gradient; 0 for none
-    squared: whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance
-        itself, which is E_est
-    averaged_steps: steps that the moving average of the weights reaches back, exponentially; 1 for no average. A run is
-        validated by the average and yields it.
-    augmented: whether the light of the windows is changed: see `training.crfnet2017.windows.augmented`
-    """
-
-    steps: int = 8_200
-    optimizer: str = "adamw"
-    learning_rate: float = 1e-3
+    steps: int = 8_200  # steps of the whole stage
+    optimizer: str = "adamw"  # "sgd" (with `momentum`) or "adamw"
+    learning_rate: float = 1e-3  # the highest of the schedule
+    #: Steps after which the learning rate falls to a tenth, again and again; 0 for one cycle: up for a tenth of the
+    #: steps, down as a cosine to 0.
     step_size: int = 0
+    #: Factor on the learning rate of the last layer, small because 270 848 inputs move each of its outputs together.
     head_factor: float = 0.001
     momentum: float = 0.9
     weight_decay: float = 0.02
-    batch: int = 256
-    mixed: bool = True
-    clip: float = 1.0
+    batch: int = 256  # windows of a step
+    mixed: bool = True  # whether to compute in bfloat16 where that is safe
+    clip: float = 1.0  # largest norm of the gradient; 0 for none
+    #: Whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance itself,
+    #: which is E_est.
     squared: bool = False
+    #: Steps that the moving average of the weights reaches back, exponentially; 1 for no average. A run is validated by
+    #: the average and yields it.
     averaged_steps: float = 600.0
-    augmented: bool = True
+    augmented: bool = True  # whether the light of the windows is changed: see `training.crfnet2017.windows.augmented`
 
 
 #: The first stage of the paper (Sec. 3.3): softmax loss over 201 responses, SGD with momentum, the learning policy

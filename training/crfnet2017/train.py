@@ -40,17 +40,12 @@ LOG_COLUMNS = ("step", "train_loss", "validation")
 
 @dataclass(frozen=True)
 class RunConfig:
-    """The configuration of a run; a run goes on only with the same.
+    """The configuration of a run; a run goes on only with the same."""
 
-    stage: "classify" or "regress"
-    seed: of the initial weights and, with the step, of the windows
-    init: a run or a checkpoint whose weights the run starts from, or "none"
-    """
-
-    stage: str
+    stage: str  # "classify" or "regress"
     recipe: Recipe
-    seed: int = 1
-    init: str = "none"
+    seed: int = 1  # of the initial weights and, with the step, of the windows
+    init: str = "none"  # a run or a checkpoint whose weights the run starts from, or "none"
 
 
 class StageTask:

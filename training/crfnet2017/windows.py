@@ -60,16 +60,11 @@ class TrainingScenes:
 
 @dataclass(frozen=True)
 class Windows:
-    """A batch of windows.
+    """A batch of windows."""
 
-    codes, uint8 (N, 3, 227, 227): 8-bit samples
-    classes, int64 (N,): which of the 201 responses each window has
-    exposures, float32 (N,): factor on the exposure s_crf
-    """
-
-    codes: Tensor
-    classes: Tensor
-    exposures: Tensor
+    codes: Tensor  # uint8 (N, 3, 227, 227): 8-bit samples
+    classes: Tensor  # int64 (N,): which of the 201 responses each window has
+    exposures: Tensor  # float32 (N,): factor on the exposure s_crf
 
     def inputs(self, part: int = PART) -> Iterator[Tensor]:
         """Yield the network's input by parts: code values in [0, 1], float32 (N, 3, 227, 227)."""

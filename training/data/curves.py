@@ -70,20 +70,14 @@ def geometric_median(
 
 @dataclass(frozen=True)
 class CurveSource:
-    """A family of responses that training draws from.
+    """A family of responses that training draws from."""
 
-    dorf, (N, 1024): measured responses
-    bases: in-camera base curves
-    camera_fraction: fraction, in [0, 1], of the responses that come from `bases`
-    warp: standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response
-    plain_fraction: fraction, in [0, 1], of the responses from `dorf` that are left as they were measured
-    """
-
-    dorf: Float64Array
-    bases: tuple[PchipInterpolator, ...]
-    camera_fraction: float = 0.5
+    dorf: Float64Array  # (N, 1024): measured responses
+    bases: tuple[PchipInterpolator, ...]  # in-camera base curves
+    camera_fraction: float = 0.5  # fraction, in [0, 1], of the responses that come from `bases`
+    #: Standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response.
     warp: float = 0.15
-    plain_fraction: float = 0.5
+    plain_fraction: float = 0.5  # fraction, in [0, 1], of the responses from `dorf` that are left as they were measured
 
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""

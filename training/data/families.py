@@ -91,14 +91,11 @@ def _log_uniform(bounds: tuple[float, float], count: int, rng: np.random.Generat
 
 @dataclass(frozen=True)
 class ResponseFamilies:
-    """Draws responses of a family.
+    """Draws responses of a family."""
 
-    in_camera: returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera"
-    film: DoRF: film, video and scientific cameras
-    """
-
+    #: Returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera".
     in_camera: Callable[[Family, int, np.random.Generator], Float64Array]
-    film: CurveSource
+    film: CurveSource  # DoRF: film, video and scientific cameras
 
     def draw(self, family: Family, count: int, rng: np.random.Generator) -> Float64Array:
         """Return responses of a family other than "unexplained", shape (count, 1024)."""

@@ -42,16 +42,12 @@ SMOOTHING, REACH = 12.0, 48
 
 @dataclass(frozen=True)
 class InCameraResponses:
-    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance: docs/METHOD.md, Eq. 21.
+    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance: docs/METHOD.md, Eq. 21."""
 
-    centers: kind -> log2 irradiance at 1024 uniform brightnesses, shape (1024,): the geometric median of its bodies
-    components, (6, 1024): deviations of one standard deviation each, over all kinds
-    spreads: kind -> how far its bodies differ, relative to `components`
-    """
-
+    #: Kind -> log2 irradiance at 1024 uniform brightnesses, shape (1024,): the geometric median of its bodies.
     centers: dict[str, Float64Array]
-    components: Float64Array
-    spreads: dict[str, float]
+    components: Float64Array  # (6, 1024): deviations of one standard deviation each, over all kinds
+    spreads: dict[str, float]  # kind -> how far its bodies differ, relative to `components`
 
     @classmethod
     def from_bodies(cls, bodies: Sequence[Body]) -> Self:

@@ -42,17 +42,13 @@ _DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.
 
 @dataclass(frozen=True, order=True)
 class ManifestRow:
-    """One file: its path in the data folder, where it comes from, and the license as the source states it.
-
-    kind: "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
-    split: "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
-    """
+    """One file: its path in the data folder, where it comes from, and the license as the source states it."""
 
     file: str
-    kind: str
+    kind: str  # "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
     source: str
     licence: str
-    split: str
+    split: str  # "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
     sha256: str = ""
 
 
@@ -60,10 +56,7 @@ COLUMNS = tuple(field.name for field in fields(ManifestRow))
 
 
 def manifest_rows(data: Path) -> list[ManifestRow]:
-    """Return the rows of the data folder `data`, sorted by file.
-
-    Raise CRFNetError if a file that the folder's own tables name is absent.
-    """
+    """Return the rows of a data folder, sorted by file; CRFNetError if a file that its own tables name is absent."""
     unhashed = {*_curves(), *_tables(data), *_scenes(data), *_real(data)}
     return sorted(_hashed(data, row) for row in unhashed)
 

@@ -41,27 +41,18 @@ KINDS = {
 
 @dataclass(frozen=True)
 class RealPhotograph:
-    """A photograph, its camera, and how well the camera's response was measured.
-
-    kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
-    grade: how well the response was measured: A, B or C
-    caution: why the photograph does not count in the means; empty where it counts
-    is_in_mean: whether its response is part of the mean of the other bodies
-    fold: bodies of one fold are left out of a mean together; its name is of one folder only
-    photograph, measured: the files of the photograph and of its response
-    metadata: of the original file, where `photograph` is not the original and has lost it
-    """
+    """A photograph, its camera, and how well the camera's response was measured."""
 
     name: str
     body: str
-    kind: str
-    grade: str
-    caution: str
-    is_in_mean: bool
-    fold: str
-    photograph: Path
-    measured: Path
-    metadata: FileMetadata | None = None
+    kind: str  # "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
+    grade: str  # how well the response was measured: A, B or C
+    caution: str  # why the photograph does not count in the means; empty where it counts
+    is_in_mean: bool  # whether its response is part of the mean of the other bodies
+    fold: str  # bodies of one fold are left out of a mean together; its name is of one folder only
+    photograph: Path  # its file
+    measured: Path  # the file of its response
+    metadata: FileMetadata | None = None  # of the original file, where `photograph` is not the original and has lost it
 
     @property
     def body_key(self) -> str:

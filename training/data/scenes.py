@@ -30,16 +30,12 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 
 @dataclass(frozen=True)
 class Scene:
-    """A linear photograph.
+    """A linear photograph."""
 
-    name: the name of its file, without suffix
-    pixels, float32 (H, W, 3): linear light, Rec.709 primaries, scaled so that the geometric mean of the luminance is 1
-    is_panorama: whether it is a band of an equirectangular panorama
-    """
-
-    name: str
+    name: str  # the name of its file, without suffix
+    #: Shape (H, W, 3): linear light, Rec.709 primaries, scaled so that the geometric mean of the luminance is 1.
     pixels: Float32Array
-    is_panorama: bool
+    is_panorama: bool  # whether it is a band of an equirectangular panorama
 
     @classmethod
     def scaled(cls, name: str, pixels: Float32Array, is_panorama: bool) -> Self:

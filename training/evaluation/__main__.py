@@ -42,10 +42,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def parsed(arguments: list[str] | None = None) -> Evaluation:
-    """Return the evaluation that a command line asks for.
-
-    Raise CRFNetError if neither data nor --quick is given, or a model or number is wrong.
-    """
+    """Return what a command line asks for; CRFNetError without data or --quick, or if a model or number is wrong."""
     options = parser().parse_args(arguments)
     if options.data is None and not options.quick:
         raise CRFNetError("there is nothing to measure on; give --data, or --quick for the bundled lights")

@@ -12,23 +12,16 @@ from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder, pack
 
 @dataclass(frozen=True)
 class Model:
-    """A model folder.
-
-    sha256: of model.onnx
-    held_out_curves: numbers of the DoRF curves that model.json lists as kept out of training
-    """
+    """A model folder."""
 
     name: str
     folder: Path
-    sha256: str
-    held_out_curves: tuple[int, ...] = ()
+    sha256: str  # of model.onnx
+    held_out_curves: tuple[int, ...] = ()  # DoRF curves that model.json lists as kept out of training
 
     @classmethod
     def find(cls, wanted: str) -> Self:
-        """Return the model of this name in crfnet_core/models, or in the folder of this path.
-
-        Raise CRFNetError if there is neither.
-        """
+        """Return the model of a name in crfnet_core/models, or in a folder; CRFNetError if there is neither."""
         folder = model_folder(wanted)
         if not (folder / "model.json").is_file():
             names = ", ".join(folder.name for folder in packaged_models())

@@ -23,27 +23,19 @@ COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition under which a photograph is taken.
+    """A condition under which a photograph is taken."""
 
-    name: the name in the report
-    factor: factor on the exposure s_crf
-    is_gray: whether all channels hold the luminance of the scene
-    noise: variance of the Gaussian noise of the sensor, before the response, in squared 255ths of the irradiance at
-        which it clips. The CRF-net paper (Sec. 5.4, Table 3) gives no unit; this is our reading of it.
-    blur: variance, in squared pixels, of the Gaussian that blurs the linear scene
-    gains: factors on red, green and blue of the linear scene
-    averaged: samples along each side of a larger original whose mean is one pixel; 0 takes a scene of the test set
-    jpeg_quality: quality of a JPEG with subsampled chroma
-    """
-
-    name: str
-    factor: float = 1.0
-    is_gray: bool = False
+    name: str  # the name in the report
+    factor: float = 1.0  # factor on the exposure s_crf
+    is_gray: bool = False  # whether all channels hold the luminance of the scene
+    #: Variance of the Gaussian noise of the sensor, before the response, in squared 255ths of the irradiance at which
+    #: it clips. The CRF-net paper (Sec. 5.4, Table 3) gives no unit; this is our reading of it.
     noise: float = 0.0
-    blur: float = 0.0
-    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    blur: float = 0.0  # variance, in squared pixels, of the Gaussian that blurs the linear scene
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)  # factors on red, green and blue of the linear scene
+    #: Samples along each side of a larger original whose mean is one pixel; 0 takes a scene of the test set.
     averaged: int = 0
-    jpeg_quality: int | None = None
+    jpeg_quality: int | None = None  # quality of a JPEG with subsampled chroma
 
     @property
     def light(self) -> Self:

@@ -34,23 +34,15 @@ CODE_NOTE = f"some photographs were measured before the code changed; delete {TA
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The scope of an evaluation.
+    """The scope of an evaluation."""
 
-    out: the folder of the table and the report
-    models: all are measured on the same photographs
-    protocols: some of `PROTOCOLS`
-    photographs: the most photographs in P0 and P2
-    stressed: the most photographs in "paper" under each condition
-    workers: processes; 1 measures in this one
-    """
-
-    out: Path
+    out: Path  # the folder of the table and the report
     test_set: TestSet
-    models: tuple[Model, ...]
-    protocols: Sequence[str]
-    photographs: int
-    stressed: int
-    workers: int
+    models: tuple[Model, ...]  # all are measured on the same photographs
+    protocols: Sequence[str]  # some of `PROTOCOLS`
+    photographs: int  # the most photographs in P0 and P2
+    stressed: int  # the most photographs in "paper" under each condition
+    workers: int  # processes; 1 measures in this one
 
     @property
     def keys(self) -> dict[str, str]:

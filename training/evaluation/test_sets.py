@@ -51,20 +51,15 @@ class SceneFile:
 
 @dataclass(frozen=True, eq=False)
 class TestSet:
-    """Scenes that no model was trained on, and responses.
-
-    curves, float64 (N, 1024): true responses at 1024 uniform irradiances
-    held_out: numbers of the responses that P2 holds out; empty without such a split
-    data: the folder of the data; None for the bundled test set
-    originals: raw photographs of high resolution, for the resolutions of the paper's Sec. 5.2
-    """
+    """Scenes that no model was trained on, and responses."""
 
     __test__ = False  # no test class of pytest
 
     scenes: tuple[SceneFile, ...]
-    curves: Float64Array
-    held_out: tuple[int, ...] = ()
-    data: Path | None = None
+    curves: Float64Array  # float64 (N, 1024): true responses at 1024 uniform irradiances
+    held_out: tuple[int, ...] = ()  # numbers of the responses that P2 holds out; empty without such a split
+    data: Path | None = None  # the folder of the data; None for the bundled test set
+    #: Raw photographs of high resolution, for the resolutions of the paper's Sec. 5.2.
     originals: tuple[SceneFile, ...] = ()
 
     @property

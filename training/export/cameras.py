@@ -4,7 +4,8 @@ It is made of the measured responses of DATA/real_bodies: measurements, no photo
 program developed or edited, since their response is the program's; stacks of grade C, whose scale is off by half a
 stop; and bodies of unknown make and model. No file says in which picture mode it was taken: two stacks of a body are
 taken for one setting of it unless their responses differ by more than `SAME_SETTING` standard deviations. A body has an
-entry for each setting, by the most certain stack.
+entry for each setting, by the most certain stack. One more is measured here, as `crfnet calibrate` does, on the raw
+files in DATA/raw_pairs.
 """
 
 import argparse
@@ -15,19 +16,14 @@ from typing import Self
 
 import numpy as np
 
+from crfnet_core.calibration import PairCalibration, calibrate_pairs
 from crfnet_core.library import Camera, CameraLibrary, CameraSettings
 from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.photograph.metadata.editors import is_editor
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real_photographs import (
-    REAL_BODIES,
-    TRUSTED_GRADES,
-    caution,
-    metadata_of_case,
-    read_measured,
-)
+from training.data.real_photographs import REAL_BODIES, TRUSTED_GRADES, caution, metadata_of_case, read_measured
 from training.data.scenes import table_rows
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
@@ -39,6 +35,12 @@ SHAPE_STOPS = 0.05
 #: Decimals of the responses: their least step is 1e-7.
 DECIMALS = 8
 
+#: Grade -> the largest standard deviation of the E_est of the stacks that have it.
+GRADES = {"A": 0.6, "B": 1.1}
+
+#: The folder of raw files with their JPEGs, all of one body.
+RAW_PAIRS = "raw_pairs"
+
 #: How the names of bodies begin whose make and model nobody knows.
 UNKNOWN_BODY = "unknown"
 
@@ -48,20 +50,14 @@ DEVELOPED = "edited/developed by software"
 
 @dataclass(frozen=True)
 class Stack:
-    """A measured exposure stack.
+    """A measured exposure stack."""
 
-    settings: the camera and its settings, as the files state them
-    error: standard deviation of its E_est
-    frames: number of exposures, or nothing where the list has none
-    caution: why it is less certain, or nothing
-    """
-
-    settings: CameraSettings
+    settings: CameraSettings  # the camera and its settings, as the files state them
     curve: ResponseCurve
-    error: float
-    frames: str
+    error: float  # standard deviation of its E_est
+    frames: str  # number of exposures, or nothing where the list has none
     grade: str
-    caution: str
+    caution: str  # why it is less certain, or nothing
 
     def is_like(self, other: Self) -> bool:
         """Return whether two stacks may be of one setting."""
@@ -70,7 +66,7 @@ class Stack:
 
 
 def measured_cameras(data: Path) -> list[Camera]:
-    """Return the cameras of DATA/real_bodies, sorted by name."""
+    """Return the cameras of DATA/real_bodies, sorted by name, and the one of DATA/raw_pairs if it is there."""
     folder = data / REAL_BODIES
     stacks = {row["stack"]: _stack(folder, row) for row in table_rows(folder / "cases.csv") if _is_taken(row)}
     bodies: dict[str, list[list[Stack]]] = {}
@@ -81,11 +77,13 @@ def measured_cameras(data: Path) -> list[Camera]:
             settings.append([stack])
         else:
             like.append(stack)
-    return [
+    cameras = [
         measured_camera(body if len(settings) == 1 else f"{body} ({number})", stacks)
         for body, settings in bodies.items()
         for number, stacks in enumerate(settings, 1)
     ]
+    raw_files = data / RAW_PAIRS
+    return [*cameras, raw_camera(calibrate_pairs([raw_files]))] if raw_files.is_dir() else cameras
 
 
 def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
@@ -101,13 +99,36 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
     return Camera(
         name=name,
-        curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
+        curve=_smoothed(first.curve),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
         source=f"{frames} (grade {first.grade}{best})",
         settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
         warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
     )
+
+
+def raw_camera(found: PairCalibration) -> Camera:
+    """Return the camera that was measured from raw files and their JPEGs, smoothed and graded as stacks are."""
+    iso = tuple(sorted({shot.iso for shot in found.shots if shot.iso}))
+    settings = replace(CameraSettings.from_metadata(found.metadata), iso=iso)
+    shape, scale = found.uncertainty.shape_stops, found.uncertainty.scale_stops
+    error = float(np.linalg.norm(brightness_per_stop(found.curve) * np.hypot(shape, scale)))
+    grade = next((name for name, most in GRADES.items() if error <= most), "C")
+    return Camera(
+        name=settings.camera,
+        curve=_smoothed(found.curve),
+        shape_stops=round(shape, 3),
+        scale_stops=round(scale, 3),
+        source=f"{len(found.shots)} raw files (grade {grade}, white by {found.white_basis})",
+        settings=settings,
+        warnings=tuple(map(str, found.warnings)),
+    )
+
+
+def _smoothed(curve: ResponseCurve) -> ResponseCurve:
+    """Return a measured response without the steps within a code, which would give bands to a plate."""
+    return ResponseCurve(response_of(log_irradiance(curve)).round(DECIMALS))
 
 
 def _is_taken(row: Mapping[str, str]) -> bool:

@@ -24,16 +24,11 @@ EvidenceTensors = tuple[Tensor, Tensor, Tensor]
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """The sizes of the network and what training leaves out at random.
+    """The sizes of the network and what training leaves out at random."""
 
-    width: values of every hidden layer
-    dropout: fraction of the hidden values that are set to 0
-    kind_dropout: fraction of the rows in which a whole kind of features is set to 0
-    """
-
-    width: int = 384
-    dropout: float = 0.1
-    kind_dropout: float = 0.15
+    width: int = 384  # values of every hidden layer
+    dropout: float = 0.1  # fraction of the hidden values that are set to 0
+    kind_dropout: float = 0.15  # fraction of the rows in which a whole kind of features is set to 0
 
 
 class KindLayer(nn.Module):

@@ -78,16 +78,11 @@ STATED_FAMILIES = {
 
 @dataclass(frozen=True)
 class Shards:
-    """Photographs as the training reads them.
+    """Photographs as the training reads them."""
 
-    statistics, float16 (P, 4, LENGTH): of the windows, in `UNIT`s
-    weights, float32 (P, 11): EMoR weights of the responses
-    curve_sets, int8 (P,): `CurveSet` of the response
-    """
-
-    statistics: Tensor
-    weights: Tensor
-    curve_sets: Tensor
+    statistics: Tensor  # float16 (P, 4, LENGTH): of the windows, in `UNIT`s
+    weights: Tensor  # float32 (P, 11): EMoR weights of the responses
+    curve_sets: Tensor  # int8 (P,): `CurveSet` of the response
 
     @property
     def families(self) -> Tensor:

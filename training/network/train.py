@@ -35,25 +35,20 @@ class TrainingConfig:
 
     A run yields the average, which takes the place of most of the decrease of the learning rate: the weights go on
     moving, and their mean does better on new scenes (training/EXPERIMENTS.md).
-
-    last_rate: the learning rate at the end of the cycle, as a part of the highest; above 0
-    averaged_steps: steps that the average reaches back, exponentially; 1 for no average
-    all_windows: fraction of the photographs seen with all their windows; of the others, some are left out at random
-    without_held_out: whether to leave out photographs whose response is, or is mixed from, a curve that P2 holds out
-    mixed: whether to compute in bfloat16 where that is safe; slow on processors that emulate it
-    seed: of the initial weights and of the order of the photographs
     """
 
     epochs: int = 12
     batch: int = 256
     learning_rate: float = 1e-3
     weight_decay: float = 0.05
-    last_rate: float = 0.2
-    averaged_steps: float = 500.0
+    last_rate: float = 0.2  # the learning rate at the end of the cycle, as a part of the highest; above 0
+    averaged_steps: float = 500.0  # steps that the average reaches back, exponentially; 1 for no average
+    #: Fraction of the photographs seen with all their windows; of the others, some are left out at random.
     all_windows: float = 0.6
+    #: Whether to leave out photographs whose response is, or is mixed from, a curve that P2 holds out.
     without_held_out: bool = False
-    mixed: bool = True
-    seed: int = 1
+    mixed: bool = True  # whether to compute in bfloat16 where that is safe; slow on processors that emulate it
+    seed: int = 1  # of the initial weights and of the order of the photographs
 
 
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:

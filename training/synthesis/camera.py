@@ -27,23 +27,16 @@ EXPOSURE_FACTORS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
 @dataclass(frozen=True)
 class Capture:
-    """The steps from exposed light to the file, apart from the response; zeros and None leave a step out.
+    """The steps from exposed light to the file, apart from the response; zeros and None leave a step out."""
 
-    shot_noise: variance of the noise at irradiance 1, where the sensor clips; it is proportional to the irradiance
-    read_noise: standard deviation of the noise that does not depend on the irradiance
-    blur: standard deviation, in samples, of the Gaussian that blurs the irradiance
-    sharpening: weight of the unsharp mask that is added to the brightness
-    grain: standard deviation of the Gaussian noise that is added to the brightness, in [0, 1]
-    subsampled: whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4)
-    """
-
+    #: Variance of the noise at irradiance 1, where the sensor clips; it is proportional to the irradiance.
     shot_noise: float = 0.0
-    read_noise: float = 0.0
-    blur: float = 0.0
-    sharpening: float = 0.0
-    grain: float = 0.0
+    read_noise: float = 0.0  # standard deviation of the noise that does not depend on the irradiance
+    blur: float = 0.0  # standard deviation, in samples, of the Gaussian that blurs the irradiance
+    sharpening: float = 0.0  # weight of the unsharp mask that is added to the brightness
+    grain: float = 0.0  # standard deviation of the Gaussian noise that is added to the brightness, in [0, 1]
     jpeg_quality: int | None = None
-    subsampled: bool = True
+    subsampled: bool = True  # whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4)
 
     @classmethod
     def draw(cls, rng: np.random.Generator) -> Self:

@@ -30,13 +30,10 @@ COARSE_STEP, MIDDLE_GRAY = 8, 0.18
 
 @dataclass(frozen=True)
 class ToneMapping:
-    """Local tone mapping: a smooth gain, before the response, that evens out the large-scale contrast.
+    """Local tone mapping: a smooth gain, before the response, that evens out the large-scale contrast."""
 
-    strength: part of the large-scale contrast, in stops, that is taken out
-    radius: standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance
-    """
-
-    strength: float
+    strength: float  # part of the large-scale contrast, in stops, that is taken out
+    #: Standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance.
     radius: float = 0.08
 
     def gain(self, planes: Planes) -> Float32Array:
@@ -62,24 +59,19 @@ class Export:
 
 @dataclass(frozen=True)
 class Development:
-    """The steps from the exposed light of a frame to the windows of the file; the defaults leave steps out.
+    """The steps from the exposed light of a frame to the windows of the file; the defaults leave steps out."""
 
-    lens_blur: standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance
-    glare: part of the frame's mean irradiance that the lens spreads over all of it
-    keeps_hue: whether the response applies to the largest and the smallest channel only: see `hue_kept`
-    export: scaling to the size of a window; without it the frame is point-sampled where it is larger
-    scatter: samples of the frame by which point sampling displaces each sample at most, at random: it stands for
-        texture that the scenes do not resolve
-    """
-
-    lens_blur: float = 0.0
-    glare: float = 0.0
+    lens_blur: float = 0.0  # standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance
+    glare: float = 0.0  # part of the frame's mean irradiance that the lens spreads over all of it
     sensor: Sensor = field(default_factory=Sensor)
     tone_mapping: ToneMapping | None = None
-    keeps_hue: bool = False
+    keeps_hue: bool = False  # whether the response applies to the largest and the smallest channel only: see `hue_kept`
     finish: Finish = field(default_factory=Finish)
     jpeg: Jpeg | None = None
+    #: Scaling to the size of a window; without it the frame is point-sampled where it is larger.
     export: Export | None = None
+    #: Samples of the frame by which point sampling displaces each sample at most, at random: it stands for texture that
+    #: the scenes do not resolve.
     scatter: int = 0
 
 

@@ -59,32 +59,22 @@ SATURATED = ((80, 99.9), (90, 99.95))
 
 @dataclass(frozen=True)
 class TrainingPhotograph:
-    """Windows of one photograph and the truth about it.
+    """Windows of one photograph and the truth about it."""
 
-    windows, uint8 (4, 227, 227, 3): code values
-    curve, (1024,): the response, of this number in the source's `curve_sets`
-    """
-
-    windows: Uint8Array
-    curve: Float64Array
+    windows: Uint8Array  # uint8 (4, 227, 227, 3): code values
+    curve: Float64Array  # (1024,): the response, of this number in the source's `curve_sets`
     curve_set: int
 
 
 @dataclass(frozen=True)
 class PhotographSource:
-    """Draws training photographs.
+    """Draws training photographs."""
 
-    scenes: the scenes of one split
-    curve_sets: responses, in sets of which a training run may leave some out
-    fractions: fraction of the photographs with each set; their sum is 1
-    luminance, (N,): see `training.synthesis.camera.automatic_exposure`
-    unusual: number of a set -> kinds of pictures that no response explains, in place of photographs with its responses
-    """
-
-    scenes: list[Scene]
-    curve_sets: tuple[DrawResponse, ...]
-    fractions: tuple[float, ...]
-    luminance: Float32Array
+    scenes: list[Scene]  # the scenes of one split
+    curve_sets: tuple[DrawResponse, ...]  # responses, in sets of which a training run may leave some out
+    fractions: tuple[float, ...]  # fraction of the photographs with each set; their sum is 1
+    luminance: Float32Array  # (N,): see `training.synthesis.camera.automatic_exposure`
+    #: Number of a set -> kinds of pictures that no response explains, in place of photographs with its responses.
     unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
 
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:

@@ -47,18 +47,12 @@ class Jpeg:
 
 @dataclass(frozen=True)
 class Sharpening:
-    """An unsharp mask on luma, with halos.
+    """An unsharp mask on luma, with halos."""
 
-    amount: factor on the difference between the luma and its blurred copy, which is added
-    radius: standard deviation, in samples, of the Gaussian that blurs
-    limit: the most that is added or taken away, in [0, 1]
-    threshold: differences are made smaller by this first, so that noise is not sharpened
-    """
-
-    amount: float
-    radius: float = 1.0
-    limit: float = 1.0
-    threshold: float = 0.0
+    amount: float  # factor on the difference between the luma and its blurred copy, which is added
+    radius: float = 1.0  # standard deviation, in samples, of the Gaussian that blurs
+    limit: float = 1.0  # the most that is added or taken away, in [0, 1]
+    threshold: float = 0.0  # differences are made smaller by this first, so that noise is not sharpened
 
     def added(self, luma: Float32Array) -> Float32Array:
         """Return the values that the mask adds to luma, float32 (N, S, S)."""
@@ -70,16 +64,12 @@ class Sharpening:
 
 @dataclass(frozen=True)
 class Finish:
-    """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out.
+    """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out."""
 
-    chroma_blur: chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd
-    luma_smoothing: luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise
-    chroma_gain: factor on chroma
-    """
-
-    chroma_blur: int = 0
+    chroma_blur: int = 0  # chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd
+    #: Luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise.
     luma_smoothing: float = 0.0
-    chroma_gain: float = 1.0
+    chroma_gain: float = 1.0  # factor on chroma
     sharpening: Sharpening | None = None
 
     def applied(self, planes: Planes) -> Planes:

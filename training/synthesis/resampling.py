@@ -28,15 +28,11 @@ THUMBNAIL_STEP = 4
 
 @dataclass(frozen=True)
 class AffineResampling:
-    """A window of side x side samples at center + matrix @ (row, column), mirrored beyond the sides of the scene.
-
-    matrix, (2, 2): from samples to pixels of the scene
-    center, (2,): row and column of the scene at the center of the window
-    """
+    """A window of side x side samples at center + matrix @ (row, column), mirrored beyond the sides of the scene."""
 
     scene: Scene
-    matrix: Float64Array
-    center: Float64Array
+    matrix: Float64Array  # (2, 2): from samples to pixels of the scene
+    center: Float64Array  # (2,): row and column of the scene at the center of the window
     side: int = WINDOW_SIZE
 
     @classmethod

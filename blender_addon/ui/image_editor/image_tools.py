@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 import bpy
 
 from ... import lazy_import
-from ...scene import compositor, plates, stored_estimate
+from ...scene import plates, stored_estimate
+from ...scene.nodes import compositor
 from ...work.errors import AddonError, expected_errors
 from .. import running
 from ..operator_base import failed, is_allowed, why_unchangeable
@@ -158,7 +159,7 @@ def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
         return
     codes = comparison.code_values(space.image, space.image_user)
     pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
-    comparison.begin(space, pixels, lazy_import.load(".scene.node_group").linear_rec709(), key)
+    comparison.begin(space, pixels, lazy_import.load(".scene.nodes.plate_group").linear_rec709(), key)
 
 
 def _key(plate: bpy.types.Image, stops: float) -> str:

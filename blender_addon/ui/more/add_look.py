@@ -34,7 +34,7 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
             plate = self.estimated_plate(context)
             tree = lazy_import.load(".scene.apply").shown_tree(context)
             curve, stops = stored_estimate.restored(plate).curve, stored_estimate.exposure(plate)
-            lazy_import.load(".scene.look_group").add_look(tree, plate, plates.name_of(plate), curve, stops)
+            lazy_import.load(".scene.nodes.look_group").add_look(tree, plate, plates.name_of(plate), curve, stops)
         except expected_errors() as problem:
             return failed(self, problem)
         is_matched = color_management.set_standard_view(context.scene)

@@ -1,7 +1,5 @@
 """Pairs of a raw file and the JPEG that the camera made of it: found by name, read, and checked to belong together."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

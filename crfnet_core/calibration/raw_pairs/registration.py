@@ -1,7 +1,5 @@
 """Where the pixels of a JPEG lie in the raw picture that it was made from: turned, cropped, scaled, distorted."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

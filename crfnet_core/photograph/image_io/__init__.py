@@ -2,17 +2,15 @@
 
 reading          any file that is read, to a `Photo` or to `CodeValues`
 file_kinds       formats by their first bytes; refuses camera raw, linear files and palettes
-header_checks    size, depth and colors in a header; texts without control characters
+header_checks    size, depth and colors in a header; texts without control characters; errors of decoders
 jpeg_files       JPEG: checks before decoding, and the standard image of a file with a gain map
 jp2_files        JPEG 2000: codings that OpenImageIO misreads, and associated alpha
 png_files        PNG: the chunks of color
 pillow_files     HEIC, AVIF and BMP, which OpenImageIO's wheel does not read, or not all of
-problems         the errors of files that cannot be decoded
 """
 
 from crfnet_core.photograph.image_io.file_kinds import PHOTOGRAPH_SUFFIXES, RAW_SUFFIXES
-from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS
-from crfnet_core.photograph.image_io.problems import first_line, oiio_message
+from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, first_line, oiio_message
 from crfnet_core.photograph.image_io.reading import read_codes, read_content, read_metadata, read_photo
 
 __all__ = ["MAX_PIXELS", "PHOTOGRAPH_SUFFIXES", "RAW_SUFFIXES", "first_line", "oiio_message"]

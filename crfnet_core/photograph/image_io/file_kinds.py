@@ -1,7 +1,5 @@
 """Recognize a file's format by its first bytes, and refuse formats that hold no encoded photograph."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import BinaryIO, Literal
 
@@ -80,11 +78,7 @@ def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
 
 
 def _is_raw(path: Path, head: bytes) -> bool:
-    """Return whether a file is camera raw, whatever its name.
-
-    A TIFF file is if it says so (DNG, Canon's CR2), or if its first picture is a reduced one and larger ones hang below
-    it, as in NEF, ARW and others.
-    """
+    """Return whether a file is camera raw, whatever its name: also TIFF that says so, or has larger pictures below."""
     if head.startswith(RAW_SIGNATURES) or (head[8:10] == b"CR" and head.startswith((b"II*\0", b"MM\0*"))):
         return True
     if not head.startswith((b"II*\0", b"MM\0*")):

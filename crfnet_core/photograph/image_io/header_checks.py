@@ -1,6 +1,4 @@
-"""Check the header of an image file (size, depth, colors), clean its texts, and add those of other segments."""
-
-from __future__ import annotations
+"""Check the header of an image file (size, depth, colors), clean its texts, add other segments; errors of decoders."""
 
 import os
 import tempfile
@@ -12,7 +10,12 @@ import OpenImageIO as oiio
 from PIL import Image
 
 from crfnet_core.errors import PhotoError, one_line
-from crfnet_core.photograph.image_io import problems
+
+#: Parts of messages by which decoders refuse sound files of a coding that they do not know.
+_UNSUPPORTED = (
+    *("support is not configured", "is not implemented", "not supported", "nsupported"),
+    "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
+)
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000
@@ -99,7 +102,7 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
         carrier = Path(folder, "carrier.jpg")
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
-        problems.oiio_message()
+        oiio_message()
         carried = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
         if source is not None:
             source.close()
@@ -123,3 +126,24 @@ def _check_color(path: Path, header: Any, kind: str) -> None:
     if is_ink or photometric not in READ_PHOTOMETRICS:
         colors = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
         raise PhotoError("other_colors", path=path, kind=colors)
+
+
+def damaged(path: Path, kind: str, problem: str) -> PhotoError:
+    """Return the error of a file that cannot be decoded, with the first line of the decoder's message."""
+    is_unsupported = any(words in problem for words in _UNSUPPORTED)
+    code = "coding_not_read" if is_unsupported else "damaged"
+    return PhotoError(code, path=path, kind=kind, problem=first_line(problem))
+
+
+def oiio_message(source: Any = oiio) -> str:
+    """Return OpenImageIO's last message, of an open file or else of the library, on plain lines."""
+    try:
+        problem = str(source.geterror())
+    except UnicodeDecodeError as failure:
+        problem = failure.object.decode(errors="replace")
+    return "\n".join(map(one_line, problem.split("\n")))
+
+
+def first_line(problem: str) -> str:
+    """Return the first line of a decoder's message."""
+    return problem.strip().partition("\n")[0] or "no reason is given"

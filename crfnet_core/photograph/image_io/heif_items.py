@@ -1,7 +1,5 @@
 """The items of a HEIF file (ISO/IEC 14496-12, 23008-12), and how often they are decoded: 80 KB can ask for 60 GP."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,10 +11,7 @@ MOST_STEPS = 8
 
 
 def meta_box(path: Path) -> bytes:
-    """Return the content of the box `meta` of a file; nothing if it has none.
-
-    Raise ValueError if it is too large or far away.
-    """
+    """Return the content of a file's box `meta`, nothing without it; ValueError if it is too large or far away."""
     with path.open("rb") as file:
         for _ in range(MOST_BOXES):
             size, kind = int.from_bytes(file.read(4)), file.read(4)

@@ -3,8 +3,6 @@
 Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2).
 """
 
-from __future__ import annotations
-
 import mmap
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """JPEG files: checks before decoding, harmless warnings, and the standard image of a file with a gain map."""
 
-from __future__ import annotations
-
 import mmap
 import re
 from collections.abc import Iterator
@@ -10,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.image_io.header_checks import check_size, damaged
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
@@ -48,11 +45,14 @@ def checked_jpeg(path: Path) -> JpegFile:
             between += scan - before - 4
             before = end
             if count >= _MOST_SEGMENTS or between > _MOST_BETWEEN:
-                raise problems.damaged(path, "JPEG", "its header has no end")
-            if marker in _START_OF_FRAME:
-                _check_frame(path, content[scan:end])
+                raise damaged(path, "JPEG", "its header has no end")
+            if marker in _START_OF_FRAME and (frame := content[scan:end]):
+                if frame[0] != 8:
+                    problem = f"{frame[0]} bits per sample"
+                    raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=problem)
+                check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))
         if content.rfind(_END_OF_IMAGE, scan) < 0:
-            raise problems.damaged(path, "JPEG", "it has no end marker")
+            raise damaged(path, "JPEG", "it has no end marker")
         return JpegFile(read_jpeg_header(content), frozenset(warnings))
 
 
@@ -82,10 +82,3 @@ def _segments(content: mmap.mmap) -> Iterator[tuple[int, int, int, int]]:
         yield segment[1][0], stray, begin, end
         if segment[1][0] == _START_OF_SCAN:
             return
-
-
-def _check_frame(path: Path, frame: bytes) -> None:
-    """Refuse a frame header of other than 8 bits, or of too many pixels."""
-    if frame and frame[0] != 8:
-        raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"{frame[0]} bits per sample")
-    check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))

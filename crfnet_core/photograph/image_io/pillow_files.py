@@ -4,8 +4,6 @@ HEIC is decoded by pi-heif, BMP and AVIF of 8 bits by Pillow. Both stop at 8 bit
 decoded by PyAV, which is an optional dependency.
 """
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Mapping
@@ -21,12 +19,10 @@ from PIL.AvifImagePlugin import AvifImageFile
 from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, with_segments
+from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, damaged, with_segments
 from crfnet_core.photograph.image_io.heif_items import decoded_pixels, meta_box
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
-from crfnet_core.photograph.photo import CodeArray, CodeValues
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeValues, upright
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
 #: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
@@ -57,11 +53,9 @@ class _Picture:
 
 
 def read_pillow_file(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, turned upright as the file says.
+    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, upright, as RGB in full range.
 
-    Limited range is expanded, and YCbCr turned into RGB by the file's own matrix. The header has the names that
-    OpenImageIO gives to the EXIF, XMP and ICC profile of a JPEG, and `CICP`, four integers. Raise PhotoError if the
-    file is damaged or too large, or the library that decodes it is not installed.
+    The header has the names that OpenImageIO gives to a JPEG's, and `CICP`, four integers. Raises as `read_photo`.
     """
     boxes, main = b"", None
     try:
@@ -72,7 +66,7 @@ def read_pillow_file(path: Path, kind: str) -> CodeValues:
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
-        raise problems.damaged(path, kind, str(problem)) from None
+        raise damaged(path, kind, str(problem)) from None
     nclx = main.info.get("nclx_profile") if main else None
     cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
     return _code_values(picture, kind, cicp, has_gain_map=any(mark in boxes for mark in _GAIN_MAPS))
@@ -98,7 +92,7 @@ def _boxes(path: Path) -> bytes:
         if decoded_pixels(boxes) > MOST_DECODED:
             raise ValueError("its tiles have many more pixels than the picture")
     except (IndexError, ValueError) as problem:
-        raise problems.damaged(path, "HEIF", str(problem)) from None
+        raise damaged(path, "HEIF", str(problem)) from None
     return boxes
 
 
@@ -153,10 +147,7 @@ def _bmp(path: Path) -> _Picture:
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
-    """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
-
-    Matrix and range come from the file's box, which FFmpeg puts into the stream, before those of the frame.
-    """
+    """Return the RGB codes of deep AVIF as stored, (H, W, 3), by PyAV; the box's matrix and range come first."""
     try:
         import av
     except ImportError:

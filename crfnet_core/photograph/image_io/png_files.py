@@ -1,14 +1,11 @@
-"""PNG: the chunks of colors, which OpenImageIO leaves out in part, and EXIF behind the pixels.
+"""PNG: the chunks of colors and EXIF behind the pixels, which OpenImageIO leaves out in part, as does Pillow.
 
-OpenImageIO also leaves out profiles that libpng dislikes. Pillow leaves out cICP, and does not say whether it widened
-samples of fewer bits. Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
+Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
 """
-
-from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -30,13 +27,15 @@ _PALETTE, _MOST_PROFILE, _UNIT = 3, 1 << 24, 100_000
 def with_color_chunks(header: Any, path: Path) -> Any:
     """Return the header of a PNG file with EXIF, wherever it stands, and the attributes of color.
 
-    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma";
-    the last two only where no other chunk describes the encoding. Texts of these names are overridden. Raise PhotoError
-    if cICP says that black is not code 0.
+    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma",
+    the last two only where no other chunk describes the encoding. Raise PhotoError for limited range.
     """
     chunks, complete = _chunks(path), oiio.ImageSpec(header)
     complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
-    complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": _profile(chunks)})
+    profile = b""
+    with suppress(zlib.error):  # behind its name; a byte names the only method
+        profile = zlib.decompressobj().decompress(chunks.get(b"iCCP", b"").partition(b"\0")[2][1:], _MOST_PROFILE)
+    complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": profile})
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]
     complete.attribute("png:palette", int(color_type == _PALETTE))
     complete.attribute("oiio:BitsPerSample", bits)  # OpenImageIO widens fewer to 8
@@ -53,15 +52,6 @@ def with_color_chunks(header: Any, path: Path) -> Any:
         if b"gAMA" in chunks:
             complete.attribute("png:gamma", struct.unpack(">I", chunks[b"gAMA"])[0] / _UNIT)
     return complete
-
-
-def _profile(chunks: Mapping[bytes, bytes]) -> bytes:
-    """Return the ICC profile; empty if it is absent or damaged."""
-    _, _, compressed = chunks.get(b"iCCP", b"").partition(b"\0")  # behind its name; a byte names the only method
-    try:
-        return zlib.decompressobj().decompress(compressed[1:], _MOST_PROFILE)
-    except zlib.error:
-        return b""
 
 
 def _chunks(path: Path) -> dict[bytes, bytes]:

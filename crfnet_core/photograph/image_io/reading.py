@@ -1,7 +1,5 @@
 """Read a photograph's code values, upright and otherwise as stored; or its metadata alone."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Iterator
@@ -15,13 +13,14 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
 from crfnet_core.photograph.image_io.header_checks import (
     MASK,
     WHITE_IS_ZERO,
     check_dpx_lines,
     checked_bit_depth,
+    damaged,
+    oiio_message,
     with_plain_texts,
 )
 from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
@@ -29,8 +28,7 @@ from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, che
 from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
-from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
-from crfnet_core.photograph.photo import CodeValues, Photo
+from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
 #: Rows read at a time, and pages of a TIFF file that are searched for the largest.
 _ROWS, _MOST_PAGES = 256, 64
@@ -154,10 +152,10 @@ class _OpenFile:
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, C); refuse damage among them."""
         values = _samples(self.source, self.header)
-        problem = problems.oiio_message(self.source)
+        problem = oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
         if values is None or problem:
-            raise problems.damaged(self.path, self.kind, problem)
+            raise damaged(self.path, self.kind, problem)
         return values
 
 
@@ -185,9 +183,9 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
-    problem = problems.oiio_message()
+    problem = oiio_message()
     if source is None:
-        raise problems.damaged(path, kind, problem)
+        raise damaged(path, kind, problem)
     try:
         if kind == "TIFF":
             _seek_picture(source)
@@ -218,7 +216,7 @@ def _seek_picture(source: Any) -> None:
         header = source.spec()
         sizes.append(header.image_pixels() * (header.get_int_attribute("tiff:PhotometricInterpretation") != MASK))
     source.seek_subimage(sizes.index(max(sizes)) if sizes else 0, 0)
-    problems.oiio_message(source)
+    oiio_message(source)
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:

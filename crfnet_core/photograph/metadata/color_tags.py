@@ -1,7 +1,5 @@
 """The color tags of files: primaries, code points of ITU-T H.273 (CICP), and published curves by name."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,11 +1,8 @@
 """Recognize phones, compacts and cameras with interchangeable lenses by the maker and the model in EXIF.
 
-Makers of one kind are known by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
-make several kinds: there the first pattern that fits the model decides, and the last one often fits everything.
-Drones, action cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
+Makers of one kind are known by name; of the others the first pattern that fits the model decides. Drones, action
+cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
 """
-
-from __future__ import annotations
 
 import re
 from enum import StrEnum
@@ -67,11 +64,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
         (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|galaxy camera", _COMPACT),
         (r"digimax|kenox|u-ca|vluu|<|techwin", _COMPACT),
     ),
-    "panasonic": (
-        (r"dmc-(g|l10?$)|dc-[gs]|dc-b(gh|s)1", _CAMERA),
-        (r"dmc-cm", _PHONE),
-        (r"dmc-|dc-|lumix", _COMPACT),
-    ),
+    "panasonic": ((r"dmc-(g|l10?$)|dc-[gs]|dc-b(gh|s)1", _CAMERA), (r"dmc-cm", _PHONE), (r"dmc-|dc-|lumix", _COMPACT)),
     "fuji": (
         (r"sp-?\d|frontier", _SCANNER),
         (r"x-s1$|(finepix )?x\d|xf|xq|x half|gfx100rf", _COMPACT),
@@ -80,20 +73,9 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     ),
     "olympus": ((r"e-?[12]0\b|e-100rs", _COMPACT), (r"e-|om-|pen|air", _CAMERA), (r"", _COMPACT)),
     "om digital": ((r"om-|e-|pen", _CAMERA), (r"", _COMPACT)),
-    "pentax": (
-        (r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT),
-        (r"k|\*|645|q", _CAMERA),
-    ),
-    "ricoh": (
-        (r"pentax (k|\*|645|q)|k-|gxr", _CAMERA),
-        (r"(ricoh )?theta", _UNKNOWN),
-        (r"", _COMPACT),
-    ),
-    "leica": (
-        (r"leitz phone", _PHONE),
-        (r"[dvc]-lux|digilux( [12])?$|digilux 4|x|q", _COMPACT),
-        (r"", _CAMERA),
-    ),
+    "pentax": ((r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT), (r"k|\*|645|q", _CAMERA)),
+    "ricoh": ((r"pentax (k|\*|645|q)|k-|gxr", _CAMERA), (r"(ricoh )?theta", _UNKNOWN), (r"", _COMPACT)),
+    "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
     "konica": ((r"dimage scan", _SCANNER), (r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
     "minolta": ((r"dimage scan", _SCANNER), (r"dimage", _COMPACT), (r"", _CAMERA)),

@@ -1,7 +1,5 @@
 """Programs that edit or develop photographs, by the names that they write as EXIF Software and into the XMP history."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

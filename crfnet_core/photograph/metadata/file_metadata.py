@@ -1,7 +1,5 @@
 """The metadata of an image file, from its header."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Color tags in an image file's header: of the ICC profile, CICP, PNG, EXIF and OpenEXR, in order of precedence."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, 
 `cicp`; ITU-R BT.2100-2 for PQ and HLG.
 """
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Callable

@@ -1,12 +1,9 @@
 """The metadata in the segments of a JPEG file, and the quantization tables of the IJG library (libjpeg)."""
 
-from __future__ import annotations
-
 import io
 import mmap
 import struct
 import warnings
-from functools import cache
 from typing import Any
 
 from PIL import ExifTags
@@ -55,7 +52,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
 
 def ijg_quality(luma: Table, chroma: Table = ()) -> int | None:
     """Return the quality, 1 to 100, at which the IJG library writes just these tables; None if it never does."""
-    quality = _ijg_qualities().get(luma)
+    quality = _QUALITIES.get(luma)
     if quality is None or (chroma and chroma != scaled_table(ANNEX_K_CHROMA, quality)):
         return None
     return quality
@@ -67,10 +64,8 @@ def scaled_table(table: Table, quality: int) -> Table:
     return tuple(min(max((divisor * percent + 50) // 100, 1), 255) for divisor in table)
 
 
-@cache
-def _ijg_qualities() -> dict[Table, int]:
-    """Return table of luma -> quality."""
-    return {scaled_table(ANNEX_K_LUMA, quality): quality for quality in range(1, 101)}
+#: Table of luma -> quality.
+_QUALITIES = {scaled_table(ANNEX_K_LUMA, quality): quality for quality in range(1, 101)}
 
 
 def _interop_index(image: JpegImageFile) -> str:

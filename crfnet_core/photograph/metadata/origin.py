@@ -141,10 +141,7 @@ def _is_developed(metadata: FileMetadata, editor: str) -> bool:
 
 
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
-    """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not show it.
-
-    Cameras begin it with EXIF, and most have own tables; libraries with JFIF, and IJG's tables; phones do both.
-    """
+    """Return whether a program encoded a JPEG file, by its segments and tables; None if they do not show it."""
     if metadata.file_format != "JPEG" or not metadata.luma_table:
         return None
     is_ijg = quality is not None and quality < INDISTINCT_QUALITY

@@ -4,8 +4,6 @@ Reflectance is scene-linear light of which 0.18 is a middle gray and 0.9 a white
 values are fractions of the largest code, as the file stores them: black lies well above 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -95,8 +93,7 @@ LOG_CURVES: dict[str, LogCurve] = {
         *(0, 10.1596 / 0.9, 1, 0.45310179, 0.12512248, 0.45310179 * 10.1596 / 0.9 / np.log(10), 0.12512248)
     ),
     "Canon Log 2": LinearToe(
-        *(0, 87.09937546 / 0.9, 1, 0.24136077, 0.092864125),
-        *(0.24136077 * 87.09937546 / 0.9 / np.log(10), 0.092864125),
+        *(0, 87.09937546 / 0.9, 1, 0.24136077, 0.092864125), *(0.24136077 * 87.09937546 / 0.9 / np.log(10), 0.092864125)
     ),
     "Canon Log 3": LinearToe(0.014 * 0.9, 14.98325 / 0.9, 1, 0.36726845, 0.12240537, 1.9754798 / 0.9, 0.12512219),
     # DJI, "White Paper on D-Log and D-Gamut" (2017).

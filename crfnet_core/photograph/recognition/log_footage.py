@@ -1,7 +1,5 @@
 """Log footage by its levels: how much more likely they make it, and which published curve lies nearest."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,10 +42,7 @@ class NearCurve:
 
 
 def log_factor(levels: Levels) -> float:
-    """Return the likelihood ratio of the levels under log footage and under ordinary photographs: Eq. L.3.
-
-    It is 1 if black is not lifted: log footage whose legal range was stretched when it was decoded has a low black too.
-    """
+    """Return the likelihood ratio of the levels under log footage and ordinary photographs: Eq. L.3; 1 if undecided."""
     is_lifted = LIFTED_BLACK <= levels.black <= HIGHEST_BLACK
     if not is_lifted or levels.white - levels.black < LEAST_SPAN:
         return 1.0
@@ -55,10 +50,7 @@ def log_factor(levels: Levels) -> float:
 
 
 def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCurve, ...]:
-    """Return up to four published curves that explain black and the middle best, the likeliest first: Eq. L.4.
-
-    All count as equally frequent. Of makers that the files name (`makes`), where some are known, only theirs are tried.
-    """
+    """Return up to four published curves, of `makes` if known, that explain black and the middle best: Eq. L.4."""
     makers = " ".join(makes).casefold()
     tried = {name: curve for name, curve in LOG_CURVES.items() if name.split()[0].casefold() in makers} or LOG_CURVES
     scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])

@@ -64,8 +64,7 @@ def recognize(
 ) -> Recognition | None:
     """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
-    `log_probability` counts the levels by `log_factor`; `is_noise`: whether no picture shows a scene; `makes` are the
-    makers that the files name.
+    `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
     if levels.is_flat or is_noise:
         reason = Notice("flat_frame" if levels.is_flat else "noise_frame")

@@ -5,6 +5,7 @@ import pytest
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.image_io.heif_items import MOST_META, decoded_pixels, meta_box
+from tests.helpers.refusals import refused
 
 
 def box(kind, *parts):
@@ -47,9 +48,8 @@ def test_an_item_counts_as_often_as_it_is_decoded(tmp_path):
 )
 def test_a_heif_file_that_would_be_decoded_for_minutes_is_refused(tmp_path, monkeypatch, references):
     monkeypatch.setattr("pi_heif.open_heif", None)
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "damaged"):
         read_photo(heif(tmp_path / "a.heic", references))
-    assert caught.value.code == "damaged"
 
 
 @pytest.mark.parametrize("before", [box(b"free") * 2000, struct.pack(">I", MOST_META + 1) + b"meta"])
@@ -63,6 +63,5 @@ def test_names_that_are_not_text_are_found_behind_a_long_box(root, tmp_path):
     content = (root / "tests" / "data" / "heif" / "full8.heic").read_bytes().replace(b"hvc1", b"\xff\xff\xff\xff", 1)
     size = int.from_bytes(content[:4])
     (tmp_path / "a.heic").write_bytes(content[:size] + box(b"free", bytes(2**21)) + content[size:])
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "damaged"):
         read_photo(tmp_path / "a.heic")
-    assert caught.value.code == "damaged"

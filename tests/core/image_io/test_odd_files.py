@@ -13,6 +13,7 @@ from crfnet_core.photograph.image_io import read_codes, read_metadata, read_phot
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 
 @pytest.mark.parametrize("bits", [8, 16])
@@ -108,9 +109,8 @@ def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
     image = Image.fromarray(np.arange(256, dtype=np.uint8).reshape(16, 16)).convert("P")
     image.putpalette(bytes(255 - code // 3 for code in range(768)))
     image.save(tmp_path / "a.bmp")
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "palette"):
         read_codes(tmp_path / "a.bmp")
-    assert caught.value.code == "palette"
 
 
 def test_dpx_with_padded_lines_that_its_header_does_not_name_is_refused(tmp_path):
@@ -121,9 +121,8 @@ def test_dpx_with_padded_lines_that_its_header_does_not_name_is_refused(tmp_path
     content = path.read_bytes()
     lines = b"".join(line.tobytes() + b"\0" for line in codes)
     path.write_bytes(content[: -codes.size] + lines)
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "coding_not_read"):
         read_codes(path)
-    assert caught.value.code == "coding_not_read"
 
 
 def test_xmp_does_not_change_the_bits(tmp_path):
@@ -168,9 +167,8 @@ def test_names_that_are_not_utf8(tmp_path):
 def test_palettes_are_refused_alike(tmp_path, name):
     Image.fromarray(colored_ramp(8).astype(np.uint8)).quantize(16).save(tmp_path / name)
     for read in (read_photo, read_metadata):
-        with pytest.raises(PhotoError) as caught:
+        with refused(PhotoError, "palette"):
             read(tmp_path / name)
-        assert caught.value.code == "palette"
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp"])

@@ -13,8 +13,9 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
-from tests.helpers.color_profiles import OWN, matrix_profile
+from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
+from tests.helpers.refusals import refused
 
 #: A profile in Adobe RGB as PNG holds it.
 ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
@@ -34,11 +35,6 @@ def chrm(primaries):
 @pytest.mark.parametrize("primaries", [*PHOTOGRAPHIC.values(), PRIMARIES[11]])
 def test_named_chromaticities_are_known(tmp_path, primaries):
     assert tags(tmp_path / "a.png", cHRM=chrm(primaries)) == ColorTags(primaries, "", "cHRM chunk")
-
-
-def test_others_are_taken_as_they_are(tmp_path):
-    primaries = tags(tmp_path / "a.png", cHRM=chrm(OWN)).primaries
-    np.testing.assert_allclose(primaries.corners, OWN.corners, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -74,9 +70,8 @@ def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
 
 
 def test_limited_range_is_refused(tmp_path):
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "coding_not_read"):
         tags(tmp_path / "a.png", cICP=bytes([1, 1, 0, 0]))
-    assert caught.value.code == "coding_not_read"
 
 
 @pytest.mark.parametrize("chunks", [{}, {"cHRM": bytes(32)}, {"cHRM": bytes(31)}, {"cICP": bytes(3)}, {"sRGB": b""}])

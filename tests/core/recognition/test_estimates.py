@@ -6,7 +6,6 @@ import pytest
 from PIL import Image, ImageDraw
 
 from crfnet_core import AnalysisOptions, Photo, ResponseNetwork, estimate_response, read_photo
-from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata import Device, Encoding, FileMetadata, file_origin
 from crfnet_core.photograph.recognition import Kind
 from crfnet_core.posterior import Family, Verdict
@@ -98,26 +97,6 @@ def test_ordinary_pictures_are_left_alone(network, plate):
         estimate = estimated(pixels, network)
         assert estimate.recognition is None
         assert estimate.families[Family.LOG] < 0.5
-
-
-@pytest.mark.parametrize(
-    ("name", "attributes", "code"),
-    [
-        ("a.dpx", {"dpx__Transfer": "Printing density"}, "tagged_encoding"),
-        ("a.dpx", {"dpx__Transfer": "Logarithmic"}, "tagged_encoding"),
-        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "tagged_color_space"),
-        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "tagged_color_space"),
-    ],
-)
-def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored(
-    tmp_path, fixed_model, name, attributes, code
-):
-    codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
-    photo, network = read_photo(write_image(tmp_path / name, codes, **attributes)), ResponseNetwork.load(fixed_model)
-    with pytest.raises(PhotoError) as caught:
-        estimate_response(photo, network=network)
-    assert caught.value.code == code
-    assert estimate_response(photo, network=network, options=AnalysisOptions(use_metadata=False)).photos == (name,)
 
 
 def test_the_linear_that_programs_write_into_every_dpx_is_not_believed(tmp_path):

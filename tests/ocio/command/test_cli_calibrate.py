@@ -11,11 +11,13 @@ from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
+from crfnet_core.library import read_calibration
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 from tests.helpers.refusals import refused
+from tests.helpers.schemas import problems_by, read_schema
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
 
 FILES = {"eos20d.spi1d", "eos20d.cube", "eos20d.clf", "eos20d.json", "eos20d_sheet.png", "config.ocio"}
@@ -159,14 +161,10 @@ def test_a_raw_file_and_its_jpeg_give_the_same_files(raw_folder, true_response):
     assert read_image(folder / "out" / "body_sheet.png").shape[:2] == (1080, 1800)
 
 
-def test_the_document_of_a_raw_file_follows_the_schema_and_becomes_a_camera(raw_folder, root, tmp_path, monkeypatch):
-    import jsonschema
-
-    from crfnet_core.library import read_calibration
-
+def test_the_document_of_a_raw_file_follows_the_schema_and_becomes_a_camera(raw_folder):
     path = raw_folder[0] / "out" / "body.json"
     document = json.loads(path.read_text(encoding="utf-8"))
-    jsonschema.validate(document, json.loads((root / "docs" / "calibrate.schema.json").read_text(encoding="utf-8")))
+    assert problems_by(read_schema("calibrate"))(document) == []
     assert document["method"] == "raw pairs"
     camera = read_calibration(path, "Body")
     assert camera.basis.startswith(f"measured from 1 raw file (white {document['white_basis']})")

@@ -4,6 +4,7 @@ import json
 import shutil
 
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 from tests.helpers.footage import log_picture, ordinary_picture
@@ -33,11 +34,22 @@ def test_limited_range_is_answered_with_the_option_of_ffmpeg(crfnet, tmp_path):
 
 
 @pytest.mark.parametrize("command", ["estimate", "linearize"])
-def test_a_frame_that_calls_itself_log_is_refused_and_nothing_is_written(crfnet, fixed_model, tmp_path, command):
-    path = as_file(tmp_path / "scan.dpx", ordinary_picture(), dpx__Transfer="Printing density")
+@pytest.mark.parametrize(
+    ("name", "tag", "code"),
+    [
+        ("scan.dpx", {"dpx__Transfer": "Printing density"}, "tagged_encoding"),
+        ("scan.dpx", {"dpx__Transfer": "Logarithmic"}, "tagged_encoding"),
+        ("pq.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "tagged_color_space"),
+        ("hlg.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "tagged_color_space"),
+    ],
+)
+def test_a_frame_that_calls_itself_log_is_refused_and_nothing_is_written(
+    crfnet, fixed_model, tmp_path, command, name, tag, code
+):
+    path = as_file(tmp_path / name, ordinary_picture(), **tag)
     out = tmp_path / ("look" if command == "estimate" else "linear.exr")
     arguments = (command, path, "--out", out, "--model", fixed_model)
-    assert crfnet(*arguments).refusal == "tagged_encoding"
+    assert crfnet(*arguments).refusal == code
     assert not out.exists()
     assert crfnet(*arguments, "--ignore-metadata").code == 0
 

@@ -100,7 +100,9 @@ def test_an_estimate_of_a_movie(crfnet, fixed_model, movie, tmp_path):
     names = {"clip.spi1d", "clip.cube", "clip.clf", "config.ocio", "clip_linear.exr", "clip.json"}
     assert set(listed(tmp_path / "look")) == names
     found = json.loads((tmp_path / "look" / "clip.json").read_text())
+    assert problems_by(read_schema("estimate"))(found) == []
     assert found["movies"][0].startswith("clip.mp4: H.264")
+    assert found["metadata"][0]["encoding"] == "movie"
     first = {"name": "clip.mp4 frame 2", "width": 320, "height": 240, "bit_depth": 8, "has_gain_map": False}
     assert found["photographs"][0] == first
     assert read_exr(tmp_path / "look" / "clip_linear.exr")[0].shape == (240, 320, 3)
@@ -139,13 +141,15 @@ def test_bad_frames_are_refused(linearize, tmp_path, monkeypatch, more, code):
 
 
 @needs_av
-def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
+def test_log_footage_is_refused_with_its_color_space_unless_metadata_is_ignored(crfnet, fixed_model, tmp_path):
     path = write_movie(tmp_path / "hdr.mp4", size=(320, 240), tags={"color_trc": 16})
-    for arguments in (("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")):
-        done = crfnet(*arguments)
+    commands = ("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")
+    for command in commands:
+        done = crfnet(*command)
         assert done.refusal == "tagged_color_space"
         assert 'in ACES configs "Rec.2100-PQ - Display"' in done.err
     assert listed(tmp_path) == ["hdr.mp4"]
+    assert [crfnet(*command, "--ignore-metadata", "--model", fixed_model).code for command in commands] == [0, 0]
 
 
 @needs_av
@@ -171,11 +175,3 @@ def test_an_interlaced_movie_is_estimated_from_but_linearized_after_deinterlacin
     assert {"clip.0001.png", "clip.0003.png"} <= set(frames)
     done = crfnet("linearize", "clip.%04d.png", "--lut", look / "plate.spi1d", "--out", "linear/clip.%04d.exr")
     assert (done.code, listed(tmp_path / "linear")[:1]) == (0, ["clip.0001.exr"])
-
-
-@needs_av
-def test_the_document_of_a_movie_follows_the_schema(crfnet, fixed_model, movie, tmp_path):
-    done = crfnet("estimate", movie, "--out", tmp_path / "a", "--model", fixed_model, "--no-sheet", "--json")
-    document = json.loads(done.out)["estimates"][0]
-    assert problems_by(read_schema("estimate"))(document) == []
-    assert document["metadata"][0]["encoding"] == "movie"

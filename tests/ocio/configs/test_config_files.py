@@ -83,10 +83,6 @@ class TestWriting:
 
 
 class TestLoading:
-    def test_a_written_config_is_loaded(self, folder):
-        write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
-        assert load_config(folder / "config.ocio").getColorSpace("CRF plate01") is not None
-
     @pytest.mark.parametrize("direction", ["toReference", "fromReference"])
     def test_a_lut_that_is_a_device_is_refused(self, folder, direction):
         """OpenColorIO would read a device without end, and wait for the writer of a pipe."""

@@ -1,7 +1,6 @@
 """Frames of movies: all of them, in order, upright; and movies that are refused in one line."""
 
 import os
-import sys
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
-from crfnet.movies.stream import check_progressive, read_stream
+from crfnet.movies.stream import read_stream
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, write_movie
 
@@ -184,13 +183,6 @@ def test_a_change_midway_is_refused(tmp_path, change):
     assert refusal(None, lambda _: list(frames.photos(frames.numbers))) == "movie_changes"
 
 
-def test_interlaced_movies_are_named_and_not_linearized(tmp_path, movie):
-    result = read_stream(write_movie(tmp_path / "a.mp4", is_interlaced=True))
-    assert "; interlaced: its frames mix two moments" in str(result)
-    assert refusal(None, lambda _: check_progressive(result)) == "movie_interlaced"
-    check_progressive(read_stream(movie))
-
-
 @pytest.mark.parametrize(("degrees", "quarters"), [(90, 1), (180, 2), (270, 3)])
 def test_frames_are_upright(tmp_path, degrees, quarters):
     image = next(pictures(1))
@@ -263,8 +255,6 @@ def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
     assert refusal(tmp_path / "a.wav") == "no_video"
     monkeypatch.setattr("crfnet.movies.stream.MAX_PIXELS", 100)
     assert refusal(movie) == "plate_too_large"
-    monkeypatch.setitem(sys.modules, "av", None)
-    assert refusal(movie) == "pyav_missing"
 
 
 def test_opening_a_movie_of_many_empty_boxes_ends(movie, monkeypatch):

@@ -5,13 +5,8 @@ import pytest
 
 from crfnet.defaults import FRAMES_ANALYZED
 from crfnet.movies.frames import MovieFrames
-from crfnet.movies.source import chosen_photos, file_source
-from crfnet.options import EstimateOptions
-from crfnet.pipeline import estimate_files
-from crfnet_core.errors import PhotoError
-from crfnet_core.estimate.options import AnalysisOptions
+from crfnet.movies.source import chosen_photos
 from tests.helpers.movies import pictures, write_movie
-from tests.helpers.refusals import refused
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -59,11 +54,3 @@ def test_frames_have_names_bits_and_metadata(tmp_path):
     assert (photo.metadata.width, photo.metadata.height) == (128, 96)
     codes = photo.pixels * 1023
     assert abs(codes - codes.round()).max() < 1e-3
-
-
-def test_a_published_curve_is_answered_with_its_color_space_unless_metadata_is_ignored(tmp_path, fixed_model):
-    path = write_movie(tmp_path / "a.mp4", size=(320, 240), tags={"color_trc": 18})
-    with refused(PhotoError, "tagged_color_space"):
-        estimate_files([file_source(path)], EstimateOptions(model=fixed_model))
-    options = EstimateOptions(model=fixed_model, analysis=AnalysisOptions(use_metadata=False))
-    assert estimate_files([file_source(path)], options).movies

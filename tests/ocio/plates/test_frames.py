@@ -84,8 +84,7 @@ def test_only_the_chosen_frames_are_found(tmp_path):
 @pytest.mark.parametrize(
     ("files", "numbers"),
     [
-        (["p.0009.png", "p.0010.png", "p.0012.png"], (9, 10, 12)),
-        (["0001.jpg", "0002.jpg"], (1, 2)),
+        *((["p.0009.png", "p.0010.png", "p.0012.png"], (9, 10, 12)), (["0001.jpg", "0002.jpg"], (1, 2))),
         (["p.98.png", "p.99.png", "p.100.png"], (98, 99, 100)),
         (["p.-002.png", "p.-001.png", "p.0000.png"], (-2, -1, 0)),
         (["shot-0001.png", "shot-0002.png"], (1, 2)),

@@ -98,18 +98,10 @@ def test_encoded_exr_keeps_its_windows(tmp_path, out):
 
 
 def test_metadata_that_remains_true_is_kept(tmp_path, out):
-    plate = write_image(
-        tmp_path / "a.tif",
-        SMALL[..., :3],
-        Make="Canon",
-        ExposureTime=0.02,
-        FNumber=2.8,
-        Orientation=6,
-        Exif__ColorSpace=1,
-        ICCProfile=(oiio.TypeDesc("uint8[8]"), np.arange(8, dtype=np.uint8)),
-        Software="a developer",
-        DateTime="2001:02:03 04:05:06",
-    )
+    camera = {"Make": "Canon", "ExposureTime": 0.02, "FNumber": 2.8, "Orientation": 6, "Exif__ColorSpace": 1}
+    profile = (oiio.TypeDesc("uint8[8]"), np.arange(8, dtype=np.uint8))
+    more = {"ICCProfile": profile, "Software": "a developer", "DateTime": "2001:02:03 04:05:06"}
+    plate = write_image(tmp_path / "a.tif", SMALL[..., :3], **camera, **more)
     linearize(plate, out / "a.exr", LUT)
     result = attributes(read_exr(out / "a.exr")[1])
     assert result["colorInteropID"] == "lin_rec709_scene"
@@ -127,13 +119,9 @@ def test_metadata_has_the_names_of_openexr(tmp_path, out):
     camera = {"Make": "Canon", "Model": "EOS 20D", "ExposureTime": 0.02, "FNumber": 2.8}
     linearize(write_image(tmp_path / "a.jpg", SMALL[..., :3], **exif, **camera), out / "a.exr", LUT, is_encoded=True)
     result = attributes(read_exr(out / "a.exr")[1])
-    assert {name: result.get(name) for name in STANDARD_NAMES} == {
-        "cameraMake": "Canon",
-        "cameraModel": "EOS 20D",
-        "lensModel": "EF50mm",
-        "nominalFocalLength": 50.0,
-        "isoSpeed": 200.0,
-    }
+    expected = {"cameraMake": "Canon", "cameraModel": "EOS 20D", "lensModel": "EF50mm"}
+    expected |= {"nominalFocalLength": 50.0, "isoSpeed": 200.0}
+    assert {name: result.get(name) for name in STANDARD_NAMES} == expected
     content = (out / "a.exr").read_bytes()
     assert all(name.encode() in content for name in (*STANDARD_NAMES, "expTime", "aperture", "Make"))
 

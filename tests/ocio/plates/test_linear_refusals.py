@@ -74,9 +74,7 @@ def test_plates_are_never_replaced(tmp_path, plate, target):
     ("options", "code"),
     [
         ({"depth": "double"}, "unknown_depth"),
-        ({"exposure": float("nan")}, "exposure_out_of_range"),
-        ({"exposure": 5000}, "exposure_out_of_range"),
-        ({"exposure": -5000}, "exposure_out_of_range"),
+        *(({"exposure": stops}, "exposure_out_of_range") for stops in (float("nan"), 5000, -5000)),
         ({"exposure": 17}, "exceeds_half"),
         ({"workers": 0}, "bad_workers"),
         ({"frames": "1-3"}, "single_file"),

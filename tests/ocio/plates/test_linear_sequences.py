@@ -16,7 +16,6 @@ from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
-from tests.helpers.refusals import refused
 
 ROOT = Path(__file__).parents[3]
 
@@ -70,16 +69,8 @@ def test_finished_frames_are_left_alone(tmp_path, out):
     assert tree(out) == complete | {"a.3.exr": b"finished elsewhere"}
 
 
-def test_overwrite_writes_everything_again(tmp_path, out):
-    pattern = write_sequence(tmp_path, range(3))
-    (out / "a.1.exr").write_bytes(b"old")
-    report = linearize(pattern, out / "a.%d.exr", LUT, overwrite=True)
-    assert (len(report.written), report.skipped) == (3, ())
-    assert read_exr(out / "a.1.exr")[0].shape == (70, 90, 3)
-
-
-def test_bad_frames_are_named_and_the_others_written(tmp_path, out):
-    pattern = write_sequence(tmp_path, range(1, 6))
+def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
+    pattern = write_sequence(tmp_path, (1, 2, 3, 5, 9))
     for number in (2, 3):
         whole = (tmp_path / f"plate.{number:04d}.png").read_bytes()
         (tmp_path / f"plate.{number:04d}.png").write_bytes(whole[: len(whole) // 2])
@@ -88,8 +79,8 @@ def test_bad_frames_are_named_and_the_others_written(tmp_path, out):
         linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
     facts = caught.value.facts
     assert (caught.value.code, facts["count"], facts["total"], facts["frames"]) == ("frames_failed", 2, 5, "2-3")
-    assert facts["first"].facts["path"] == tmp_path / "plate.0002.png"
-    assert listed(out) == ["a.1.exr", "a.4.exr", "a.5.exr"]
+    assert (facts["first"].facts["path"], facts["gaps"]) == (tmp_path / "plate.0002.png", "; missing are 4, 6-8")
+    assert listed(out) == ["a.1.exr", "a.5.exr", "a.9.exr"]
     assert calls[-1] == (5, 5)
     write_sequence(tmp_path, (2, 3))
     assert len(linearize(pattern, out / "a.%d.exr", LUT).written) == 2
@@ -108,13 +99,6 @@ def test_frames_that_another_process_finishes_meanwhile_are_left_alone(tmp_path,
     assert [path.name for path in report.written] == ["a_0001.exr", "a_0003.exr"]
     assert [path.name for path in report.skipped] == ["a_0002.exr"]
     assert (out / "a_0002.exr").read_bytes() == finished.read_bytes()
-
-
-def test_gaps_are_named_although_a_frame_failed(tmp_path, out):
-    pattern = write_sequence(tmp_path, (1, 2, 4, 9))
-    (tmp_path / "plate.0002.png").write_bytes(b"\x89PNG\r\n\x1a\n")
-    with refused(PlateError, "frames_failed", gaps="; missing are 3, 5-8"):
-        linearize(pattern, out / "a.%d.exr", LUT)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")

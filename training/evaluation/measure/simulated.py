@@ -44,19 +44,14 @@ JOB_SIZE = 20
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """Simulated photographs, and the estimators to measure on them.
+    """Simulated photographs, and the estimators to measure on them."""
 
-    protocol: the protocol; in `PAPER` gamma 2.2 is the only baseline
-    has_baselines: whether to measure the baselines
-    bank: the responses that estimates choose from; None for the packaged ones
-    """
-
-    protocol: str
+    protocol: str  # the protocol; in `PAPER` gamma 2.2 is the only baseline
     photographs: Sequence[TestPhotograph]
     test_set: TestSet
     models: tuple[Model, ...]
-    has_baselines: bool = True
-    bank: ResponseBank | None = None
+    has_baselines: bool = True  # whether to measure the baselines
+    bank: ResponseBank | None = None  # the responses that estimates choose from; None for the packaged ones
 
     def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
         """Return a row of the table."""

@@ -35,12 +35,9 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cases:
-    """The rows of several estimators on the same photographs, side by side.
+    """The rows of several estimators on the same photographs, side by side."""
 
-    rows: estimator -> its rows on the N photographs, in one order
-    """
-
-    rows: dict[str, list[Row]]
+    rows: dict[str, list[Row]]  # estimator -> its rows on the N photographs, in one order
 
     @property
     def first(self) -> list[Row]:

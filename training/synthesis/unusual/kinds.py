@@ -48,15 +48,12 @@ class UnusualKind(StrEnum):
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a kind is made.
-
-    is_recorded: whether a sensor's blur and noise come before the rendering, and sharpening and grain after it
-    is_compressed: whether a share is compressed as JPEG of random quality at the end
-    """
+    """How a kind is made."""
 
     rendering: Rendering
+    #: Whether a sensor's blur and noise come before the rendering, and sharpening and grain after it.
     is_recorded: bool = True
-    is_compressed: bool = True
+    is_compressed: bool = True  # whether a share is compressed as JPEG of random quality at the end
 
 
 #: How each kind is made, and why an estimate of its response must not be trusted.

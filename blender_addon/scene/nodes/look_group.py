@@ -6,8 +6,6 @@ Then the code values are taken for sRGB and converted to the working space: the 
 screen and in files that are saved with it. A second output has the code values themselves, for the view transform Raw.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import bpy
@@ -17,13 +15,13 @@ from crfnet.errors import ConfigError
 from crfnet_core import ResponseCurve
 from crfnet_core.response.curve import SAMPLES
 
-from . import stored_estimate
-from .color_management import color_spaces
-from .curve_nodes import STEPS, add_curves
-from .node_building import GAP, WIDTH, NodeGrid, activate
-from .node_group import by_channel, linear_rec709, made_for, new_group, working_space
-from .node_links import LOOK, groups_of, holds_group_of, output_of
-from .plates import Datablock
+from .. import stored_estimate
+from ..color_management import color_spaces
+from ..plates import Datablock
+from .building import GAP, WIDTH, NodeGrid, activate
+from .curves import STEPS, add_curves
+from .links import LOOK, groups_of, holds_group_of, output_of
+from .plate_group import by_channel, linear_rec709, made_for, new_group, working_space
 
 #: The output of the group with code values.
 CODE_VALUES = "Code Values"

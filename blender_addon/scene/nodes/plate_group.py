@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The inverse response as a compositor node group of RGB Curves nodes: see `curve_nodes`.
+"""The inverse response as a compositor node group of RGB Curves nodes: see `curves`.
 
-Plates of 8 bits need one, with a step at every code; deeper ones, as many as `curve_nodes.TOLERANCE` takes. Values are
+Plates of 8 bits need one, with a step at every code; deeper ones, as many as `curves.TOLERANCE` takes. Values are
 clipped to [0, 1], as where files are baked.
 """
-
-from __future__ import annotations
 
 import bpy
 import PyOpenColorIO as OCIO
@@ -16,13 +14,13 @@ from crfnet.errors import ConfigError
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
 
-from . import stored_estimate
-from .code_values import alpha_in_compositor, is_deep
-from .color_management import color_spaces, data_space, running_config
-from .curve_nodes import EIGHT_BITS, Part, add_curves, deep_parts
-from .node_building import CHANNELS, NodeGrid, Socket
-from .node_links import PLATE
-from .plates import Datablock, short_hash
+from .. import stored_estimate
+from ..code_values import alpha_in_compositor, is_deep
+from ..color_management import color_spaces, data_space, running_config
+from ..plates import Datablock, mark, short_hash
+from .building import CHANNELS, NodeGrid, Socket
+from .curves import EIGHT_BITS, Part, add_curves, deep_parts
+from .links import PLATE
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
@@ -63,14 +61,14 @@ def working_space() -> str:
     return "scene_linear" if "scene_linear" in kinds else role_name(running_config(), OCIO.ROLE_SCENE_LINEAR)
 
 
-def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.types.NodeTree:
+def new_group(plate: Datablock, title: str, name: str, exposure: str) -> bpy.types.NodeTree:
     """Return a plate's new node group, with sockets and without nodes.
 
-    A short hash of the plate ends its name. The custom property `mark`, whose value is the plate, finds it again.
+    A short hash of the plate ends its name. The custom property of a name, whose value is the plate, finds it again.
     `exposure` is the description of the Exposure socket.
     """
     group = bpy.data.node_groups.new(f"{title} {short_hash(plate)}", "CompositorNodeTree")
-    group[mark] = plate
+    mark(group, name, plate)
     group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
     stops = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
@@ -79,9 +77,9 @@ def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.typ
     return group
 
 
-def made_for(plate: Datablock, mark: str = PLATE) -> bpy.types.NodeTree | None:
+def made_for(plate: Datablock, name: str = PLATE) -> bpy.types.NodeTree | None:
     """Return the node group that was made for a plate; not one linked from another file."""
-    return next((group for group in bpy.data.node_groups if group.get(mark) == plate and group.library is None), None)
+    return next((group for group in bpy.data.node_groups if group.get(name) == plate and group.library is None), None)
 
 
 def _add_nodes(

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ready comp: the render stands over a plate that is scaled to its size, and goes to the output and a viewer."""
 
-from __future__ import annotations
-
 import bpy
 
-from .node_building import GAP, IS_BLENDER_5, Socket
-from .node_links import LOOK, linearizes, output_of
+from .building import GAP, IS_BLENDER_5, Socket
+from .links import LOOK, linearizes, output_of
 
 #: Nodes that hand the render on as it is.
 _PASSING = ("R_LAYERS", "REROUTE")

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find the nodes behind a node, through reroutes, other nodes and node groups, and plates linearized twice or never."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from enum import Enum
 
 import bpy
 
-from .plates import Datablock, datablock_of_node, shown_by_node
+from ..plates import Datablock, datablock_of_node, shown_by_node
 
 #: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"
@@ -86,15 +84,15 @@ def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
     yield from (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate)
 
 
-def groups_of(plate: Datablock, scene: bpy.types.Scene, mark: str = PLATE) -> list[bpy.types.Node]:
+def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> list[bpy.types.Node]:
     """Return the nodes that hold a plate's node group, or look, and are not those of other scenes only."""
-    return [node for tree in trees_here(scene) for node in tree.nodes if holds_group_of(node, plate, mark)]
+    return [node for tree in trees_here(scene) for node in tree.nodes if holds_group_of(node, plate, name)]
 
 
-def holds_group_of(node: bpy.types.Node, plate: Datablock, mark: str = PLATE) -> bool:
+def holds_group_of(node: bpy.types.Node, plate: Datablock, name: str = PLATE) -> bool:
     """Return whether a node holds a plate's node group, or look, muted or not."""
     tree = getattr(node, "node_tree", None)
-    return tree is not None and tree.get(mark) == plate
+    return tree is not None and tree.get(name) == plate
 
 
 def linearized_twice(plate: Datablock) -> str:

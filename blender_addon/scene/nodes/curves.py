@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import bpy
 import numpy as np
 
-from .node_building import NodeGrid, Socket
+from .building import NodeGrid, Socket
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
@@ -64,7 +64,7 @@ def deep_parts(curve: ResponseCurve) -> list[Part]:
 
     def is_close(start: int, end: int) -> bool:
         steps, inside = np.linspace(start, end, STEPS + 1), codes[max(start, DARK + 1) : end + 1]
-        drawn = np.interp(inside, steps, np.interp(steps, codes, light))
+        drawn = np.interp(inside, steps, curve.inverse(steps / DEEP_WHITE))
         return bool((abs(np.log2(drawn / light[inside])) <= TOLERANCE).all())
 
     ends = [0]

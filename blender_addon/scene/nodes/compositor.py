@@ -9,9 +9,9 @@ from typing import TypeAlias
 
 import bpy
 
-from .node_building import GAP, IS_BLENDER_5, WIDTH, activate
-from .node_links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
-from .plates import Datablock, datablock_of_node
+from ..plates import Datablock, datablock_of_node
+from .building import GAP, IS_BLENDER_5, WIDTH, activate
+from .links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
