@@ -142,7 +142,7 @@ def obstacle(datablock: Datablock) -> str:
     if CODE_VALUES_OF in datablock:
         return "These are the code values of a plate, not the plate: open the photograph itself"
     if BAKED_FROM in datablock:
-        return f"This is the linear plate of {datablock[BAKED_FROM]}, which has no camera response any more"
+        return f"This is linear already: it was baked from {datablock[BAKED_FROM]}"
     if getattr(datablock, "use_multiview", False):  # which clips do not have
         return "This image holds views for two eyes: open the picture of one eye, and untick Use Multi-View"
     if datablock.filepath.lower().endswith(".gif"):

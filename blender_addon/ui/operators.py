@@ -103,8 +103,9 @@ class PlateOperator(ChosenPlate, PlateChoices):
 
     def _apply(self, context: bpy.types.Context, completed: "CompletedJob", withheld: str = "WARNING") -> set[str]:
         """Apply a completed job to the scene, and report what was done; `withheld` is the kind of report if nothing."""
-        comparison.end_all()
-        done = lazy_import.load(".scene.apply").apply(context, completed)
+        with comparison.same_view(context):
+            comparison.end_all()
+            done = lazy_import.load(".scene.apply").apply(context, completed)
         if completed.is_applied:
             remember_applied(plates.datablock_of_plate(completed.job.plate))
         running.redraw_editors(context.window_manager)

@@ -25,10 +25,11 @@ MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
 
 
 class ResponsePanel:
-    """The panel, which is the same in every editor."""
+    """The panel, the same in every editor, in a tab of its own: elsewhere, Blender's panels push it out of sight."""
 
     bl_label = "Camera Response"
     bl_region_type = "UI"
+    bl_category = "Response"
 
     if TYPE_CHECKING:  # of bpy.types.Panel
         layout: bpy.types.UILayout
@@ -64,24 +65,21 @@ class ResponsePanel:
 
 
 class CRF_PT_image(ResponsePanel, bpy.types.Panel):
-    """The panel in the Image Editor, in a tab of its own: above it, Blender's panels change with the image."""
+    """The panel in the Image Editor."""
 
     bl_space_type = "IMAGE_EDITOR"
-    bl_category = "Response"
 
 
 class CRF_PT_clip(ResponsePanel, bpy.types.Panel):
     """The panel in the Movie Clip Editor."""
 
     bl_space_type = "CLIP_EDITOR"
-    bl_category = "Footage"
 
 
 class CRF_PT_node(ResponsePanel, bpy.types.Panel):
     """The panel in the compositor."""
 
     bl_space_type = "NODE_EDITOR"
-    bl_category = "Node"
 
 
 def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

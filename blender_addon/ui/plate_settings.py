@@ -11,6 +11,7 @@ from ..scene.nodes import compositor
 from ..scene.nodes.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
+from .image_editor import comparison
 from .preferences import APPLY_MODES, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
@@ -60,8 +61,9 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     return cameras
 
 
-def _expose_nodes(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
-    """Give the nodes of a plate that has been applied as nodes the exposure of its settings."""
+def _expose(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
+    """Give the nodes of a plate that has been applied as nodes the exposure of its settings, and its linear view."""
+    comparison.renew_soon()
     plate = settings.id_data
     applied = plate[stored_estimate.KEY].get(APPLIED) if stored_estimate.is_stored(plate) else None
     if applied is None or applied["apply"] != "NODES":
@@ -95,7 +97,7 @@ class PlateChoices:
         soft_max=6,
         min=-MAX_EXPOSURE,
         max=MAX_EXPOSURE,
-        update=_expose_nodes,
+        update=_expose,
     )
     compose: bpy.props.BoolProperty(
         name="Compose Render over Plate", description="Put the render over a plate that no node shows yet"

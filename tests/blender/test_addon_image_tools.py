@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from blender_addon.ui.image_editor import comparison
 from tests.helpers.images import write_image
 
 from .helpers import bpy, curve_of, load_sequence, pixels_of, plates, show
@@ -28,7 +29,8 @@ def test_the_linear_plate_is_shown_and_kept_for_the_next_time(image, plate_file,
         assert plates.active_datablock(bpy.context) == image  # the panel still shows the plate
         assert image.colorspace_settings.name == "sRGB"
         image.camera_response_settings.exposure = 1
-        show(after=True)  # anew
+        assert bpy.app.timers.is_registered(comparison.renew)  # by and by
+        comparison.renew()
         linear = space.image
         assert not linear.is_dirty  # or Blender would ask to save it
         assert np.abs(pixels_of(space.image)[..., :3] - 2 * expected).max() < 2e-6

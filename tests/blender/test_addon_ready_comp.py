@@ -44,6 +44,7 @@ def test_the_render_stands_over_the_linear_plate(cube, image, codes, tmp_path):
     assert not image.camera_response_settings.compose  # there is a comp now
     (viewer,) = (node for node in scene_tree().nodes if node.type == "VIEWER")
     assert viewer.inputs["Image"].links[0].from_node == over()[0] == output().inputs[0].links[0].from_node
+    assert over()[0].location_absolute.y == output().location_absolute.y  # the render's link passes behind no node
     comp = rendered(scene, tmp_path / "comp.exr", (256, 256), has_render=True)
     scene_tree().links.new(over()[2].outputs[0], output().inputs[0])
     render = rendered(scene, tmp_path / "render.exr", (256, 256), has_render=True)

@@ -58,6 +58,8 @@ class Artist:
         before = None
         for _ in range(20):
             time.sleep(0.25)
+            for _ in range(2):  # it answers between its events and draws after them, so the second answer comes later
+                self.value("1")
             shown = self.screen.picture().rgb
             if shown == before:
                 return

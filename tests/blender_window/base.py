@@ -75,11 +75,20 @@ class WindowTest(unittest.TestCase):
         artist.value(f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})")
         return path
 
-    def assert_linear(self, artist: Artist, path: str | Path, plate: str, most: float) -> None:
-        """Assert that an EXR file holds the linear values that `crfnet estimate` wrote for a plate."""
-        expected = files() / "expected" / Path(plate).with_suffix("") / f"{Path(plate).stem}_linear.exr"
-        difference = artist.call("plates.largest_difference", str(path), str(expected))
+    def assert_linear(self, artist: Artist, path: str | Path, plate: str, most: float, *, beside: str = "") -> None:
+        """Assert that an EXR file holds, beside an object, the linear values that `crfnet estimate` wrote."""
+        difference = self.difference(artist, path, plate, beside=beside)
         self.assertLessEqual(difference, most, f"largest difference from the linear values of {plate}")
+
+    def difference(self, artist: Artist, path: str | Path, plate: str, **options: str) -> float:
+        """Return the largest difference of an EXR file from the linear values that `crfnet estimate` wrote."""
+        expected = files() / "expected" / Path(plate).with_suffix("") / f"{Path(plate).stem}_linear.exr"
+        return artist.call("plates.largest_difference", str(path), str(expected), **options)
+
+    def assert_view(self, artist: Artist, view: list[float]) -> None:
+        """Assert that zoom and position are as they were, to a pixel of the screen."""
+        for found, expected in zip(artist.call("editors.view"), view, strict=True):
+            self.assertAlmostEqual(found, expected, delta=1)
 
     def keep(self, picture: Picture, name: str) -> Path:
         """Keep a picture for whoever looks at it later."""

@@ -7,6 +7,9 @@ from tests.blender_window.base import BAKED, NODES, WindowTest, report
 
 PLATE = "plate.jpg"
 
+#: The kinds of the linked nodes of a comp that two clicks make.
+READY_COMP = ["ALPHAOVER", "GROUP", "GROUP_OUTPUT", "IMAGE", "R_LAYERS", "SCALE", "VIEWER"]
+
 
 class TestButton(WindowTest):
     def setUp(self):
@@ -24,15 +27,28 @@ class TestButton(WindowTest):
         for found, wanted in zip(stored["brightness"], expected["response"]["brightness"], strict=True):
             self.assertAlmostEqual(found, wanted, places=4)
 
-    def test_nodes_give_the_linear_values_of_the_command(self):
-        self.artist.apply()
+    def test_two_clicks_put_the_render_over_the_linear_plate_and_one_undo_takes_all_back(self):
+        self.artist.run()
+        before = self.artist.call("plates.state")
+        self.artist.run(APPLY)
+        after = self.artist.call("plates.state")
+        self.assertEqual(self.artist.call("plates.comp"), READY_COMP)
+        self.assertTrue(after["film"])
         rendered = self.artist.call("plates.render", self.name, str(self.folder / "rendered.exr"))
-        self.assert_linear(self.artist, rendered, PLATE, NODES)
+        self.assert_linear(self.artist, rendered, PLATE, NODES, beside="Cube")
+        self.assertGreater(self.difference(self.artist, rendered, PLATE), 0.1, "the cube is not rendered")
+        self.press_keys("ctrl+z")
+        self.assertEqual(self.artist.call("plates.state"), before)
+        self.press_keys("ctrl+shift+z")
+        self.assertEqual(self.artist.call("plates.state"), after)
 
-    def test_baked_files_hold_the_linear_values_of_the_command(self):
+    def test_baked_files_hold_the_linear_values_of_the_command_and_are_shown_in_place(self):
         self.artist.call("plates.choose", self.name, apply="BAKE", depth="float")
+        self.artist.call("editors.pan", 37, -21)
+        view = self.artist.call("editors.view")
         self.artist.apply()
         self.artist.settle()
+        self.assert_view(self.artist, view)
         self.keep(self.artist.picture(), "button_bake")
         (baked,) = (self.folder / "project").glob("*.exr")
         self.assert_linear(self.artist, baked, PLATE, BAKED)
@@ -46,16 +62,8 @@ class TestButton(WindowTest):
         self.assertEqual(self.artist.call("plates.state"), before)
         self.assertIsNone(self.artist.call("plates.stored", name))
 
-    def test_one_undo_takes_all_back_and_redo_brings_it(self):
-        self.artist.run()
-        before = self.artist.call("plates.state")
-        self.artist.run(APPLY)
-        after = self.artist.call("plates.state")
-        self.assertNotEqual(after, before)
+    def press_keys(self, keys):
+        """Press keys over the picture, and wait until Blender has drawn."""
         self.artist.settle()
-        self.artist.screen.key("ctrl+z")
+        self.artist.screen.key(keys)
         self.artist.settle()
-        self.assertEqual(self.artist.call("plates.state"), before)
-        self.artist.screen.key("ctrl+shift+z")
-        self.artist.settle()
-        self.assertEqual(self.artist.call("plates.state"), after)

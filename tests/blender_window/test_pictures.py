@@ -32,8 +32,7 @@ class TestPictures(WindowTest):
 
         artist.open(self.plate("plate.jpg"))
         keep("before")
-        large = artist.open(self.plate("large.jpg"))
-        artist.call("plates.choose", large, apply="EXPORT", folder=str(self.folder / "large"))
+        artist.open(self.plate("large.jpg"))
         artist.start()
         time.sleep(0.5)
         keep("running")
@@ -57,7 +56,9 @@ class TestPictures(WindowTest):
         keep("linear")
         artist.call("editors.show", "NODE_EDITOR", alone=False)
         artist.settle()
-        artist.call("editors.show_all_nodes")
+        artist.call("editors.show_nodes")
         artist.call("editors.show_tab", "NODE_EDITOR")
+        artist.settle()
+        artist.screen.key("Home")  # all of them, now that their sizes are known
         artist.settle()
         keep("compositor", "NODE_EDITOR")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from tests.blender_window.artist import CANCEL, ESTIMATE
+from tests.blender_window.artist import CANCEL, COLUMNS, ESTIMATE
 from tests.blender_window.base import WindowTest
 
 #: Fraction of the sidebar's pixels that may differ where nothing is to be drawn: the highlight of a button.
@@ -15,17 +15,13 @@ REPORT = 60
 
 
 class TestRunning(WindowTest):
-    def start_with(self, plate, **settings):
-        """Return an artist with a plate open, its settings chosen, and the name of its image."""
-        alone = settings.pop("alone", True)
+    def start_with(self, plate, *, alone=True):
+        """Return an artist with a plate open, and the name of its image."""
         artist = self.start()
-        name = artist.open(self.plate(plate), alone=alone)
-        artist.call("plates.choose", name, **settings)
-        artist.settle()
-        return artist, name
+        return artist, artist.open(self.plate(plate), alone=alone)
 
     def test_the_panel_shows_the_estimate_although_the_mouse_rests(self):
-        artist, _ = self.start_with("plate.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        artist, _ = self.start_with("plate.jpg")
         artist.run()
         time.sleep(2)
         shown = artist.picture(artist.sidebar())
@@ -33,11 +29,11 @@ class TestRunning(WindowTest):
         artist.call("editors.redraw")
         artist.settle()
         drawn = artist.picture(artist.sidebar())
-        self.keep(shown, "after_export_mouse_at_rest")
+        self.keep(shown, "estimate_mouse_at_rest")
         self.assertLess(shown.difference(drawn), HIGHLIGHT)
 
     def test_the_status_bar_is_as_before_after_a_change_of_workspace(self):
-        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"), alone=False)
+        artist, _ = self.start_with("large.jpg", alone=False)
         before = artist.picture(artist.status_bar())
         artist.start()
         usual = artist.call("editors.change_workspace", "Modeling")
@@ -47,14 +43,14 @@ class TestRunning(WindowTest):
         self.assert_status_bar_is(artist, before, "status_after_workspace")
 
     def test_the_status_bar_is_as_before_after_the_add_on_was_disabled(self):
-        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        artist, _ = self.start_with("large.jpg")
         before = artist.picture(artist.status_bar())
         artist.start()
         artist.call("runs.disable")
         self.assert_status_bar_is(artist, before, "status_after_disabling")
 
     def test_one_run_at_a_time_which_the_panel_can_cancel(self):
-        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        artist, _ = self.start_with("large.jpg")
         position = artist.find(ESTIMATE)
         artist.start()
         artist.screen.click(*position)
@@ -66,10 +62,11 @@ class TestRunning(WindowTest):
         self.assertTrue(artist.call("runs.can_run"))
 
     def test_the_cancel_button_of_the_panel_cancels(self):
-        artist, name = self.start_with("large.jpg", apply="BAKE", folder=str(self.folder / "look"))
+        artist, name = self.start_with("large.jpg")
         _, row = artist.find(ESTIMATE)
+        box = artist.sidebar()
         artist.start()
-        artist.press(CANCEL, artist.find(CANCEL, row=row))
+        artist.press(CANCEL, (box.x + round(COLUMNS[-1] * box.width), row))  # a search would last longer than the run
         artist.wait_for_end()
         self.assertIsNone(artist.call("plates.stored", name))
 

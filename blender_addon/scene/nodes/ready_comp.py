@@ -35,12 +35,13 @@ def put_render_over_plate(output: bpy.types.Node, place: tuple[float, float]) ->
     tree.links.new(render, foreground)
     tree.links.new(over.outputs["Image"], end)
     tree.links.new(over.outputs["Image"], viewer.inputs["Image"])
-    x, y = place
+    over.parent = viewer.parent = end.node.parent
+    over.location = end.node.location  # so that the link of the render passes above the nodes of the plate
+    x, scale.location.y = place
     for node in (scale, over, end.node):
         node.location.x += max(0, x - node.location_absolute.x)
-        x += node.width + GAP
-    scale.location.y = over.location.y = y
-    viewer.location, viewer.parent = (end.node.location.x, y), end.node.parent
+        x = node.location_absolute.x + node.width + GAP
+    viewer.location = (end.node.location.x, scale.location.y)
     tree.nodes.active = viewer
     for node in tree.nodes:
         if node.type == "R_LAYERS" and node.scene is not None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +34,9 @@ _LARGEST = 65535
 
 #: Rows that are converted at a time: few enough to stay in the processor's cache.
 _ROWS = 16
+
+#: Seconds after the last change of the exposure until linear plates are shown with it: a slider waits for none of them.
+_PAUSE = 0.2
 
 
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
@@ -77,7 +80,11 @@ def end(space: bpy.types.SpaceImageEditor) -> None:
 @contextmanager
 def same_view(context: bpy.types.Context) -> Iterator[None]:
     """Keep zoom and position of an Image Editor while it changes to another image: Blender has them for each image."""
-    space, region = context.space_data, next(each for each in context.area.regions if each.type == "WINDOW")
+    space = context.space_data
+    if space is None or space.type != "IMAGE_EDITOR":
+        yield
+        return
+    region = next(each for each in context.area.regions if each.type == "WINDOW")
     zoom, center = space.zoom_percentage, region.view2d.region_to_view(region.width / 2, region.height / 2)
     yield
     if space.image is None or not all(map(math.isfinite, center)):  # it was never drawn
@@ -97,6 +104,23 @@ def end_all() -> None:
             space.image = compared_plate(space.image)
     for image in [image for image in bpy.data.images if COMPARED_PLATE in image]:
         bpy.data.images.remove(image)
+
+
+def renew_soon() -> None:
+    """Call `renew` once this has not been called for a moment."""
+    with suppress(ValueError):  # none is waiting
+        bpy.app.timers.unregister(renew)
+    bpy.app.timers.register(renew, first_interval=_PAUSE)
+
+
+def renew() -> None:
+    """Show linear plates with the present exposure, where they are shown."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "IMAGE_EDITOR" and compared_plate(area.spaces.active.image) is not None:
+                with bpy.context.temp_override(window=window, area=area):
+                    bpy.ops.crf.compare(is_after=True)
+                area.tag_redraw()
 
 
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:

@@ -70,16 +70,14 @@ def show_tab(kind: str) -> None:
     area(kind).tag_redraw()
 
 
-def show_all_nodes() -> None:
-    """Fit all nodes of the scene's compositor into the node editor, with its first group active."""
+def show_nodes() -> None:
+    """Show the nodes of the scene's compositor in the node editor, with its first group active."""
     space = area("NODE_EDITOR").spaces.active
     scene = bpy.context.scene
     tree = scene.compositing_node_group if bpy.app.version >= (5, 0, 0) else scene.node_tree
     if bpy.app.version >= (5, 0, 0):
         space.node_tree = tree
     tree.nodes.active = next(node for node in tree.nodes if node.type == "GROUP")
-    with context("NODE_EDITOR"):
-        bpy.ops.node.view_all()
 
 
 def pan(x: float, y: float) -> None:

@@ -8,6 +8,11 @@ from typing import Any
 import bpy
 import editors
 import numpy as np
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+
+#: Pixels by which a rendered object is larger than its outline.
+EDGE = 2
 
 #: The custom property that holds an estimate.
 KEY = "camera_response"
@@ -59,43 +64,21 @@ def state() -> dict[str, Any]:
     }
 
 
-def tree() -> Any:
-    """Return the compositor tree of the scene."""
+def comp() -> list[str]:
+    """Return the kinds of the linked nodes in the scene's compositor."""
     scene = bpy.context.scene
-    return scene.compositing_node_group if bpy.app.version >= (5, 0, 0) else scene.node_tree
-
-
-def plate_nodes(name: str) -> list[bpy.types.Node]:
-    """Return the nodes of the compositor that show the file of an image."""
-    file = bpy.path.abspath(bpy.data.images[name].filepath)
-    shown = [node for node in tree().nodes if node.type == "IMAGE" and node.image]
-    return [node for node in shown if bpy.path.abspath(node.image.filepath) == file]
-
-
-def last_socket(name: str) -> bpy.types.NodeSocket:
-    """Return the socket at which the light of a plate leaves its last node group."""
-    (node,) = plate_nodes(name)
-    socket = node.outputs["Image"]
-    waiting = [link.to_node for link in socket.links]
-    while waiting:
-        node = waiting.pop()
-        socket = node.outputs[0] if node.type == "GROUP" else socket
-        waiting += [link.to_node for output in node.outputs for link in output.links]
-    return socket
+    tree = scene.compositing_node_group if bpy.app.version >= (5, 0, 0) else scene.node_tree
+    return sorted(node.type for node in tree.nodes if any(socket.is_linked for socket in (*node.inputs, *node.outputs)))
 
 
 def render(name: str, path: str) -> str:
-    """Render what the compositor makes of a plate, behind its last node group, to a float EXR file of its size."""
+    """Render the scene, with all that its compositor does, to a float EXR file of the size of an image."""
     scene, image = bpy.context.scene, bpy.data.images[name]
-    wanted = "GROUP_OUTPUT" if bpy.app.version >= (5, 0, 0) else "COMPOSITE"
-    output = next(node for node in tree().nodes if node.type == wanted)
-    tree().links.new(last_socket(name), output.inputs[0])
-    for node in [node for node in tree().nodes if node.type == "R_LAYERS"]:
-        tree().nodes.remove(node)  # nothing is to be rendered
     settings = scene.render
     settings.resolution_x, settings.resolution_y = image.size
     settings.resolution_percentage, settings.dither_intensity, settings.use_sequencer = 100, 0, False
     settings.compositor_device, settings.compositor_precision = "CPU", "FULL"
+    settings.engine = "BLENDER_WORKBENCH"  # the fastest without a graphics card
     if hasattr(settings.image_settings, "media_type"):
         settings.image_settings.media_type = "IMAGE"
     settings.image_settings.file_format = "OPEN_EXR"
@@ -105,12 +88,24 @@ def render(name: str, path: str) -> str:
     return path
 
 
-def largest_difference(path: str, expected: str) -> float:
-    """Return the largest absolute difference between the colors of two EXR files, in linear values."""
+def largest_difference(path: str, expected: str, *, beside: str = "") -> float:
+    """Return the largest absolute difference of the colors of two EXR files, in linear values, beside an object."""
     found, wanted = _pixels(path)[..., :3], _pixels(expected)[..., :3]
     if found.shape != wanted.shape:
         raise ValueError(f"{path} is {found.shape}, {expected} is {wanted.shape}")
-    return float(np.abs(found - wanted).max())
+    difference = np.abs(found - wanted)
+    if beside:
+        difference[_box(bpy.data.objects[beside], *found.shape[:2])] = 0
+    return float(difference.max())
+
+
+def _box(thing: bpy.types.Object, height: int, width: int) -> tuple[slice, ...]:
+    """Return the rows and columns of a rendered picture that an object fills, its soft edge among them."""
+    scene = bpy.context.scene
+    corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
+    places = np.array([world_to_camera_view(scene, scene.camera, corner)[:2] for corner in corners])
+    columns, rows = places[:, 0] * width, (1 - places[:, 1]) * height
+    return tuple(slice(int(each.min()) - EDGE, int(each.max()) + EDGE + 1) for each in (rows, columns))
 
 
 def _pixels(path: str) -> Any:
