@@ -8,8 +8,6 @@ the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in
 ones in a folder of CSV files. The thresholds of pairs were set without --unseen.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 import time
@@ -17,7 +15,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageEnhance, ImageFilter
 
 from crfnet_core.calibration import calibrate_pairs, calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
@@ -25,7 +22,7 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
-from tests.helpers.pairs import drawn_options, make_pair, radii
+from tests.helpers.pairs import drawn_options, make_pair, spoil
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
 DATA = Path(__file__).parent / "data"
@@ -153,14 +150,9 @@ def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, optio
         "scale score": abs(scale) / found.uncertainty.scale_stops,
         "local": found.local,
         "seen": low <= 25 and high >= 235,
-        "top": high,
-        "low": low,
-        "residual": found.residual,
         "basis": found.white_basis,
         "stated": found.uncertainty.shape_stops,
         "scale stated": found.uncertainty.scale_stops,
-        "posterior": found.uncertainty.shape["posterior"],
-        "sampling": found.uncertainty.shape["sampling"],
         "seconds": time.process_time() - begin,
     }
 
@@ -219,53 +211,6 @@ def measure_wrong(kinds: tuple[str, ...], count: int, scenes: list[Path], curves
                 codes.append((kind, problem.code))
     print(f"{len(codes)} of {count} refused: {dict(Counter(codes))}", flush=True)
     print(f"accepted, with the error of the shape (and the stated one): {accepted}", flush=True)
-
-
-def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurve, options) -> None:
-    """Replace the JPEG of a pair by one that is not of this raw file, or no longer as the camera wrote it."""
-    rng = np.random.default_rng(options.seed)
-    if kind in ("another scene", "moved"):
-        moved = np.roll(light, round(light.shape[1] * rng.uniform(0.03, 0.2)), axis=1)
-        _, wrong = make_pair(folder, other if kind == "another scene" else moved, curve, options, "wrong")
-        wrong.replace(jpeg)
-        return
-    image = Image.open(jpeg).convert("RGB")
-    if kind == "edited" and rng.uniform() < 0.5:  # by a program that leaves its name
-        image.save(jpeg, quality=92, exif=_software_tag("Adobe Photoshop Lightroom Classic 13.0"))
-    else:
-        edited(kind, image, rng).save(jpeg, quality=92)
-
-
-def edited(kind: str, image: Image.Image, rng: np.random.Generator) -> Image.Image:
-    """Return a picture as a program changes it."""
-    part = {"cropped": rng.uniform(0.5, 0.88), "crop of 99 %": 0.99}.get(kind)
-    if part:
-        return image.crop((0, 0, round(image.width * part), round(image.height * part)))
-    if kind == "flipped":
-        return image.transpose(Image.Transpose.FLIP_LEFT_RIGHT)
-    if kind == "blurred":
-        return image.filter(ImageFilter.GaussianBlur(rng.uniform(1, 3)))
-    if kind == "saturation":
-        return ImageEnhance.Color(image).enhance(1.5)
-    codes = np.asarray(image, np.float64)
-    if kind == "vignette":
-        codes = codes * (1 - rng.uniform(0.2, 0.5) * np.square(radii(codes)))[..., None]
-    elif kind == "levels of a channel":
-        low, high = rng.uniform(10, 30), rng.uniform(225, 245)
-        channel = rng.integers(3)
-        codes[..., channel] = (codes[..., channel] - low) / (high - low) * 255
-    elif kind == "tone curve":
-        codes = codes + rng.choice([-1, 1]) * rng.uniform(8, 20) * np.sin(2 * np.pi * codes / 255)
-    else:  # a gradient filter
-        codes = codes * np.linspace(rng.uniform(0.4, 0.7), 1.2, image.height)[:, None, None]
-    return Image.fromarray(np.clip(codes, 0, 255).astype(np.uint8))
-
-
-def _software_tag(name: str) -> Image.Exif:
-    """Return EXIF that names a program."""
-    exif = Image.Exif()
-    exif[305] = name
-    return exif
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageEnhance, ImageFilter
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 from crfnet_core.colorimetry import ADOBE_RGB, REC709, Primaries, conversion_matrix
@@ -98,3 +98,50 @@ def drawn_options(seed: int, **fixed) -> PairOptions:
         "seed": seed,
     }
     return PairOptions(**{**drawn, **fixed})
+
+
+def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurve, options) -> None:
+    """Replace the JPEG of a pair by one that is not of this raw file, or no longer as the camera wrote it."""
+    rng = np.random.default_rng(options.seed)
+    if kind in ("another scene", "moved"):
+        moved = np.roll(light, round(light.shape[1] * rng.uniform(0.03, 0.2)), axis=1)
+        _, wrong = make_pair(folder, other if kind == "another scene" else moved, curve, options, "wrong")
+        wrong.replace(jpeg)
+        return
+    image = Image.open(jpeg).convert("RGB")
+    if kind == "edited" and rng.uniform() < 0.5:  # by a program that leaves its name
+        image.save(jpeg, quality=92, exif=_software_tag("Adobe Photoshop Lightroom Classic 13.0"))
+    else:
+        edited(kind, image, rng).save(jpeg, quality=92)
+
+
+def edited(kind: str, image: Image.Image, rng: np.random.Generator) -> Image.Image:
+    """Return a picture as a program changes it."""
+    part = {"cropped": rng.uniform(0.5, 0.88), "crop of 99 %": 0.99}.get(kind)
+    if part:
+        return image.crop((0, 0, round(image.width * part), round(image.height * part)))
+    if kind == "flipped":
+        return image.transpose(Image.Transpose.FLIP_LEFT_RIGHT)
+    if kind == "blurred":
+        return image.filter(ImageFilter.GaussianBlur(rng.uniform(1, 3)))
+    if kind == "saturation":
+        return ImageEnhance.Color(image).enhance(1.5)
+    codes = np.asarray(image, np.float64)
+    if kind == "vignette":
+        codes = codes * (1 - rng.uniform(0.2, 0.5) * np.square(radii(codes)))[..., None]
+    elif kind == "levels of a channel":
+        low, high = rng.uniform(10, 30), rng.uniform(225, 245)
+        channel = rng.integers(3)
+        codes[..., channel] = (codes[..., channel] - low) / (high - low) * 255
+    elif kind == "tone curve":
+        codes = codes + rng.choice([-1, 1]) * rng.uniform(8, 20) * np.sin(2 * np.pi * codes / 255)
+    else:  # a gradient filter
+        codes = codes * np.linspace(rng.uniform(0.4, 0.7), 1.2, image.height)[:, None, None]
+    return Image.fromarray(np.clip(codes, 0, 255).astype(np.uint8))
+
+
+def _software_tag(name: str) -> Image.Exif:
+    """Return EXIF that names a program."""
+    exif = Image.Exif()
+    exif[305] = name
+    return exif
