@@ -61,9 +61,7 @@ import bpy
 plate, folder, heic = sys.argv[-3:]
 bpy.ops.wm.read_userpref()
 image = bpy.data.images.load(plate)
-image.camera_response_settings.apply = "EXPORT"
-image.camera_response_settings.folder = folder
-print(bpy.ops.crf.estimate_response(image=image.name))
+print(bpy.ops.crf.estimate_response(image=image.name, apply="EXPORT", folder=folder))
 import crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO
 packages = (crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO)
 stray = sorted({"tqdm", "matplotlib", "google", "flatbuffers", "pi_heif"} & set(sys.modules))
