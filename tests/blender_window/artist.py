@@ -39,12 +39,12 @@ class Artist:
         self.screen, self._scale, self._keep = blender.screen, scale, keep
         self.call("editors.look", scale=scale, theme=theme)
 
-    def open(self, path: Path, *, alone: bool = True, **options: Any) -> str:
+    def open(self, path: Path, *, alone: bool = True) -> str:
         """Open an image in the Image Editor, the panel beside it; return its name."""
         if not self.value("[area for area in editors.window().screen.areas if area.type == 'IMAGE_EDITOR'] and 1"):
             self.call("editors.show", "IMAGE_EDITOR", alone=alone)
             self.settle()
-        name = self.call("plates.open_image", str(path), **options)
+        name = self.call("plates.open_image", str(path))
         self.settle()
         self.call("editors.show_tab", "IMAGE_EDITOR")
         self.settle()

@@ -54,26 +54,18 @@ class WindowTest(unittest.TestCase):
             blender.quit()
             assert "Traceback" not in blender.printed, blender.printed[-LAST:]
 
-    def start(self, file: Path | None = None, *, scale: int = 1, theme: str = "dark") -> Artist:
+    def start(self, *, scale: int = 1, theme: str = "dark") -> Artist:
         """Return an artist at a Blender that has just started."""
-        blender = Blender(os.environ[BLENDER], screen(*SIZES[scale]), self.home, file)
+        blender = Blender(os.environ[BLENDER], screen(*SIZES[scale]), self.home)
         self.blenders.append(blender)
         self.addCleanup(blender.quit)
         return Artist(blender, scale=scale, theme=theme, keep=self.keep)
 
-    def plate(self, name: str, to: str = "") -> Path:
-        """Return a copy of a plate, or of a folder of frames, in the case's own folder."""
-        source, target = files() / "plates" / name, self.folder / "project" / (to or name)
+    def plate(self, name: str) -> Path:
+        """Return a copy of a plate in the case's own folder."""
+        target = self.folder / "project" / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            return Path(shutil.copytree(source, target))
-        return Path(shutil.copyfile(source, target))
-
-    def save(self, artist: Artist, name: str = "shot.blend") -> Path:
-        """Save the .blend file and return its path."""
-        path = self.folder / "project" / name
-        artist.value(f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})")
-        return path
+        return Path(shutil.copyfile(files() / "plates" / name, target))
 
     def assert_linear(self, artist: Artist, path: str | Path, plate: str, most: float, *, beside: str = "") -> None:
         """Assert that an EXR file holds, beside an object, the linear values that `crfnet estimate` wrote."""

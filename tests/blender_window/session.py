@@ -27,15 +27,15 @@ START, ANSWER = 300, 600
 class Blender:
     """A running Blender, whose window fills a screen; use it in a `with` statement, or call `quit`.
 
-    Everything that it stores is in the folder ``blender`` of `home`; `file` is a .blend file to open.
+    Everything that it stores is in the folder ``blender`` of `home`.
     """
 
-    def __init__(self, program: str, screen: Screen, home: Path, file: Path | None = None) -> None:
+    def __init__(self, program: str, screen: Screen, home: Path) -> None:
         self.screen, self.home, self.user = screen, home, home / "blender"
         self._folder = Path(tempfile.mkdtemp(prefix="crf_blender_"))
         self._socket, self._log, self._printed = self._folder / "socket", self._folder / "log", ""
         command = [program, "--window-geometry", "0", "0", str(screen.width), str(screen.height)]
-        command += [*([str(file)] if file else []), "--python", str(INSIDE), "--", str(self._socket)]
+        command += ["--python", str(INSIDE), "--", str(self._socket)]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(command, env=self._environment(), stdout=log, stderr=log)
         try:

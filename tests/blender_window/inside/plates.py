@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import bpy
@@ -18,21 +17,10 @@ EDGE = 2
 KEY = "camera_response"
 
 
-def open_image(path: str, *, names: tuple[str, ...] = (), finds_tiles: bool = True, sequence: bool = False) -> str:
-    """Open a file, or several as in the file browser, in the Image Editor; return the name of its image."""
-    found = Path(path)
-    files = [{"name": name} for name in (names or (found.name,))]
+def open_image(path: str) -> str:
+    """Open a file in the Image Editor; return the name of its image."""
     with editors.context("IMAGE_EDITOR"):
-        bpy.ops.image.open(
-            "EXEC_DEFAULT",
-            True,
-            filepath=path,
-            directory=str(found.parent),
-            files=files,
-            relative_path=False,
-            use_sequence_detection=sequence,
-            use_udim_detecting=finds_tiles,
-        )
+        bpy.ops.image.open("EXEC_DEFAULT", True, filepath=path, relative_path=False)
         image = bpy.context.space_data.image
         bpy.ops.image.view_zoom_ratio(ratio=min(1, bpy.context.region.width / 2 / max(1, image.size[0])))
     bpy.ops.ed.undo_push(message="Open")
