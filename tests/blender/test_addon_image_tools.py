@@ -5,10 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from blender_addon.ui.image_editor import comparison
 from tests.helpers.images import write_image
 
-from .helpers import bpy, curve_of, load_sequence, pixels_of, plates, show
+from .helpers import bpy, comparison, curve_of, load_sequence, pixels_of, plates, show
 from .helpers import estimate as run
 
 pytestmark = pytest.mark.usefixtures("estimated")
