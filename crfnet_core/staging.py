@@ -69,7 +69,8 @@ def remove_abandoned(folder: Path) -> None:
                     continue
                 _name_the_rest(temporary, folder)
                 _remove(temporary, folder)  # before the lock ends, so that nobody takes up a folder that is about to go
-            _remove(temporary, folder)
+            if os.name == "nt":  # which removes no open file
+                _remove(temporary, folder)
 
 
 def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
