@@ -19,7 +19,7 @@ raw_pairs     a response from raw files and their JPEGs; its packages are option
 docs/CALIBRATE.md has the equations, and how good it is.
 """
 
-from crfnet_core.calibration.calibrate import Calibration, FrameReport, calibrate_stack
+from crfnet_core.calibration.calibrate import Calibration, FrameReport, calibrate_pairs, calibrate_stack
 from crfnet_core.calibration.exposures import ExposureLabel, parse_times
 from crfnet_core.calibration.measured import (
     Comparison,
@@ -27,7 +27,6 @@ from crfnet_core.calibration.measured import (
     PairCalibration,
     ShotReport,
     Uncertainty,
-    calibrate_pairs,
 )
 
 __all__ = ["Calibration", "Comparison", "ExposureLabel", "FrameReport", "MeasuredResponse", "PairCalibration"]

@@ -1,4 +1,4 @@
-"""Measure a camera's response from an exposure stack: the whole of it on one screen."""
+"""Measure a camera's response from an exposure stack: the whole of it on one screen; and the door to raw pairs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from crfnet_core.calibration.checks import (
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
-from crfnet_core.calibration.measured import MeasuredResponse
+from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
 from crfnet_core.calibration.uncertainty import uncertainty_of
 from crfnet_core.errors import CalibrationError
@@ -106,6 +106,17 @@ def calibrate_stack(
         counts=_best_exposed(frames, measurement).counts,
         warnings=notices_of(measurement, names, exposures, white=white),
     )
+
+
+def calibrate_pairs(
+    paths: Sequence[Path], *, accept_edited: bool = False, progress: Progress | None = None
+) -> PairCalibration:
+    """Return the result of `raw_pairs.measure.measure_pairs`; CalibrationError if its optional packages are absent."""
+    try:
+        from crfnet_core.calibration.raw_pairs.measure import measure_pairs
+    except ImportError:
+        raise CalibrationError("rawpy_missing", path=paths[0]) from None
+    return measure_pairs(paths, accept_edited=accept_edited, progress=progress)
 
 
 def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:

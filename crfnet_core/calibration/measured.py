@@ -1,18 +1,17 @@
 """A measured response: of an exposure stack, or of raw files and their JPEGs."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.errors import CalibrationError, Notice
+from crfnet_core.errors import Notice
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
-from crfnet_core.types import Float64Array, Progress
+from crfnet_core.types import Float64Array
 
 
 @dataclass(frozen=True)
@@ -107,14 +106,3 @@ class PairCalibration(MeasuredResponse):
     local: float  # exponent of the surroundings' light in the gain: 0 without local tone mapping
     corner: float  # stops by which the camera brightens the corners
     shots: tuple[ShotReport, ...]
-
-
-def calibrate_pairs(
-    paths: Sequence[Path], *, accept_edited: bool = False, progress: Progress | None = None
-) -> PairCalibration:
-    """Return the result of `raw_pairs.measure.measure_pairs`; CalibrationError if its optional packages are absent."""
-    try:
-        from crfnet_core.calibration.raw_pairs.measure import measure_pairs
-    except ImportError:
-        raise CalibrationError("rawpy_missing", path=paths[0]) from None
-    return measure_pairs(paths, accept_edited=accept_edited, progress=progress)
