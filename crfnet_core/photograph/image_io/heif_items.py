@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from crfnet_core.photograph.image_io.iso_boxes import boxes
+
 #: Bytes of the largest box `meta`, and the most boxes before it.
 MOST_META, MOST_BOXES = 4 * 2**20, 1000
 
@@ -32,7 +34,7 @@ def decoded_pixels(meta: bytes) -> int:
     Raise ValueError if items refer to each other too deeply or in a circle, IndexError if a box is cut short.
     """
     areas, parts = dict[int, int](), dict[int, list[int]]()
-    for kind, content in _boxes(meta[4:]):
+    for kind, content in boxes(meta[4:]):
         if kind == b"iprp":
             areas |= _areas(content)
         elif kind == b"iref":
@@ -50,26 +52,12 @@ def decoded_pixels(meta: bytes) -> int:
     return max((pixels(item, 0) for item in {*areas, *parts}), default=0)
 
 
-def _boxes(content: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield the kind and the content of each box."""
-    place = 0
-    while place + 8 <= len(content):
-        size, head = _number(content, place, 4), 8
-        if size == 1:
-            size, head = _number(content, place + 8, 8), 16
-        size = size or len(content) - place
-        if size < head:
-            raise ValueError("a box has no size")
-        yield content[place + 4 : place + 8], content[place + head : place + size]
-        place += size
-
-
 def _areas(properties: bytes) -> dict[int, int]:
     """Return the pixels of each item by its properties `ispe`: the box `iprp` has these, and who has which."""
     areas, found = [0], dict[int, int]()
-    for kind, content in _boxes(properties):
+    for kind, content in boxes(properties):
         if kind == b"ipco":
-            areas += [_number(box, 4, 4) * _number(box, 8, 4) * (name == b"ispe") for name, box in _boxes(content)]
+            areas += [_number(box, 4, 4) * _number(box, 8, 4) * (name == b"ispe") for name, box in boxes(content)]
         elif kind == b"ipma":
             place, size, width = 8, 4 if content[0] else 2, 2 if content[3] & 1 else 1
             while place < len(content):
@@ -84,7 +72,7 @@ def _areas(properties: bytes) -> dict[int, int]:
 def _references(content: bytes) -> Iterator[tuple[int, list[int]]]:
     """Yield each item that is derived from others, and these: the entries `dimg` of the box `iref`."""
     size = 4 if content[:1] > b"\0" else 2
-    for kind, box in _boxes(content[4:]):
+    for kind, box in boxes(content[4:]):
         if kind == b"dimg":
             yield _number(box, 0, size), [_number(box, place, size) for place in range(size + 2, len(box), size)]
 

@@ -4,10 +4,11 @@ Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2).
 """
 
 import mmap
-from collections.abc import Iterator
 from pathlib import Path
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.image_io.header_checks import damaged
+from crfnet_core.photograph.image_io.iso_boxes import boxes
 
 #: Start of the codestream and of its marker SIZ; the start of the box of headers in a JP2 file.
 _SIZE_MARKER, _HEADERS = b"\xff\x4f\xff\x51", b"jp2h"
@@ -25,16 +26,20 @@ def is_premultiplied(path: Path) -> bool:
         start = content.find(_SIZE_MARKER)
         _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
         at = content.find(_HEADERS, 0, start) if start > 0 else -1
-        size = int.from_bytes(content[max(at - 4, 0) : max(at, 0)])
-        boxes = dict(reversed([*_boxes(content[at + 4 : at - 4 + size])]))  # of several of one name the first counts
-    if b"pclr" in boxes:
+        size = int.from_bytes(content[at - 4 : at]) if at >= 4 else 0
+        inner = content[at + 4 : at - 4 + size] if size else b""  # a bare codestream has no headers
+    try:
+        headers = dict(reversed([*boxes(inner)]))  # of several of one name the first counts
+    except ValueError as problem:
+        raise damaged(path, "JPEG 2000", str(problem)) from None
+    if b"pclr" in headers:
         raise PhotoError("palette", path=path, kind="a JPEG 2000 file with a palette")
-    color = boxes.get(b"colr", b"")
+    color = headers.get(b"colr", b"")
     space = int.from_bytes(color[3:7])
     if color[:1] == bytes([_BY_NUMBER]) and space not in _READ_SPACES:
         kind = "CMYK" if space == _CMYK else f"JPEG 2000 color space {space}"
         raise PhotoError("other_colors", path=path, kind=kind)
-    channels = boxes.get(b"cdef", b"")[2:]
+    channels = headers.get(b"cdef", b"")[2:]
     return any(int.from_bytes(channels[at + 2 : at + 4]) == _PREMULTIPLIED for at in range(0, len(channels), 6))
 
 
@@ -47,11 +52,3 @@ def _check_size(path: Path, size: bytes) -> None:
             raise PhotoError("coding_not_read", path=path, kind="JPEG 2000", problem="signed samples")
         if (right - left) % max(across, 1) or (bottom - top) % max(down, 1):
             raise PhotoError("coding_not_read", path=path, kind="JPEG 2000", problem="subsampled, and of odd size")
-
-
-def _boxes(content: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield the name and the content of each box in a box."""
-    at = 0
-    while size := int.from_bytes(content[at : at + 4]):
-        yield content[at + 4 : at + 8], content[at + 8 : at + size]
-        at += max(size, 8)
