@@ -68,9 +68,9 @@ def recognize(
     """
     if levels.is_flat or is_noise:
         reason = Notice("flat_frame" if levels.is_flat else "noise_frame")
-        return Recognition(Kind.FLAT, str(reason), str(Notice("flat_frame_advice")))
+        return _recognized(Kind.FLAT, reason, Notice("flat_frame_advice"))
     if is_limited_range(levels):
-        return Recognition(Kind.LIMITED_RANGE, str(Notice("limited_range")), str(Notice("limited_range_advice")))
+        return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
@@ -78,13 +78,12 @@ def recognize(
 
 def refuse_tagged(photo: Photo) -> None:
     """Raise PhotoError if the metadata name an encoding with a published curve, with the color space to choose."""
-    if photo.metadata is None or not photo.metadata.color.transfer:
-        return
-    refuse_linear(photo.metadata.color, photo.path)
-    transfer = photo.metadata.color.transfer
-    space = TAGGED_SPACES.get(transfer, "")
-    code = "tagged_color_space" if space else "tagged_encoding"
-    raise PhotoError(code, path=photo.path, transfer=transfer, source=photo.metadata.color.source, space=space)
+    color = photo.metadata.color if photo.metadata else ColorTags()
+    refuse_linear(color, photo.path)
+    if color.transfer:
+        space = TAGGED_SPACES.get(color.transfer, "")
+        code = "tagged_color_space" if space else "tagged_encoding"
+        raise PhotoError(code, path=photo.path, transfer=color.transfer, source=color.source, space=space)
 
 
 def refuse_linear(color: ColorTags, path: Path) -> None:
@@ -93,35 +92,42 @@ def refuse_linear(color: ColorTags, path: Path) -> None:
         raise PhotoError("tagged_linear", path=path, source=color.source)
 
 
+def _recognized(kind: Kind, reason: Notice, advice: Notice) -> Recognition:
+    """Return the recognition of a kind, in the sentences of two notices."""
+    return Recognition(kind, str(reason), str(advice))
+
+
 def _by_origin(origin: FileOrigin) -> Recognition | None:
     """Return the recognition of a rendering or a sent copy by its metadata."""
     if origin.renderer:
         reason = Notice("rendering", {"renderer": origin.renderer})
-        return Recognition(Kind.RENDERING, str(reason), str(Notice("rendering_advice")))
+        return _recognized(Kind.RENDERING, reason, Notice("rendering_advice"))
     if origin.is_sent_copy:
         reason = Notice("sent_copy", {"quality": origin.jpeg_quality})
-        return Recognition(Kind.SENT_COPY, str(reason), str(Notice("sent_copy_advice")))
+        return _recognized(Kind.SENT_COPY, reason, Notice("sent_copy_advice"))
     return None
 
 
 def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
-    """Return the recognition of log footage, with the curves that fit."""
+    """Return the recognition of log footage, with the curves that fit; the safest has the least expected error."""
     near = nearest_curves(levels, makes)
-    least = min(near, key=lambda each: each.expected_error)
-    spaces = " or ".join(f'"{COLOR_SPACES[each.name]}"' for each in near if each.name in COLOR_SPACES)
-    likely = ", ".join(f"{each.name} ({100 * each.probability:.0f} %)" for each in near)
-    code = round(255 * levels.black)
-    reason = Notice("log_footage_of_maker", {"code": code, "curve": least.name})
+    safest = min(near, key=lambda curve: curve.expected_error)
+    spaces = " or ".join(f'"{COLOR_SPACES[curve.name]}"' for curve in near if curve.name in COLOR_SPACES)
     advice = [Notice("log_footage_spaces", {"spaces": spaces}) if spaces else Notice("log_footage_advice")]
-    if len(near) > 1:
+    code = round(255 * levels.black)
+    if len(near) == 1:
+        reason = Notice("log_footage_of_maker", {"code": code, "curve": safest.name})
+    else:
+        likely = ", ".join(f"{curve.name} ({100 * curve.probability:.0f} %)" for curve in near)
         reason = Notice("log_footage", {"code": code, "curves": likely})
-        advice += [Notice("log_footage_safest", {"curve": least.name, "stops": f"{least.expected_error:.1f}"})]
+        stops = f"{safest.expected_error:.1f}"
+        advice.append(Notice("log_footage_safest", {"curve": safest.name, "stops": stops}))
     return Recognition(
         kind=Kind.LOG_FOOTAGE,
         reason=str(reason),
         advice="; ".join(map(str, advice)),
-        curves=tuple(each.name for each in near),
-        probabilities=tuple(each.probability for each in near),
-        errors=tuple(each.expected_error for each in near),
-        color_space=COLOR_SPACES.get(least.name, ""),
+        curves=tuple(curve.name for curve in near),
+        probabilities=tuple(curve.probability for curve in near),
+        errors=tuple(curve.expected_error for curve in near),
+        color_space=COLOR_SPACES.get(safest.name, ""),
     )
