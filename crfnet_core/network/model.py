@@ -55,11 +55,11 @@ class ModelConfig:
         """
         path = Path(path)
         entries = _read_object(path)
-        unfit = [name for name, kind in _KINDS.items() if not isinstance(entries.get(name), kind)]
+        unfit = [name for name, kind in _ENTRY_TYPES.items() if not isinstance(entries.get(name), kind)]
         if unfit:
             raise ModelError("bad_model_config", path=path, entries=", ".join(unfit))
         names = tuple(map(str, entries["output_names"]))
-        config = cls(**{name: entries[name] for name in _KINDS} | {"output_names": names})
+        config = cls(**{name: entries[name] for name in _ENTRY_TYPES} | {"output_names": names})
         kind = (config.basis, config.window_size)
         is_evidence = len(set(names)) == len(names) in (3, 6)  # of windows, and of all of them together if it pools
         if kind != KIND or config.components not in WEIGHTS or config.input_name not in INPUTS or not is_evidence:
@@ -130,4 +130,6 @@ def _read_object(path: Path) -> dict[str, Any]:
 
 
 #: Entry of model.json -> its type.
-_KINDS = {name: get_origin(kind) or kind for name, kind in get_type_hints(ModelConfig).items()} | {"output_names": list}
+_ENTRY_TYPES = {name: get_origin(kind) or kind for name, kind in get_type_hints(ModelConfig).items()} | {
+    "output_names": list
+}

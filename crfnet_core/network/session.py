@@ -48,7 +48,8 @@ class Session:
         except _PROBLEMS as problem:
             raise ModelError("unloadable_graph", folder=folder, reason=problem) from None
         sizes = [size for node in self._session.get_inputs() for size in node.shape[1:2]]
-        self._read = sizes[0] if sizes and isinstance(sizes[0], int) else None  # a name takes all
+        #: Columns of the input that the graph reads; None, in place of which it has a name, for all.
+        self._columns = sizes[0] if sizes and isinstance(sizes[0], int) else None
 
     def run(self, inputs: Float32Array) -> list[Float32Array]:
         """Return the network's outputs for some rows: finite, and of the shapes of evidence.
@@ -56,24 +57,28 @@ class Session:
         Of statistics it reads the first cues, as many as it was trained with. Raise ModelError if they are not, or
         onnxruntime fails.
         """
-        options = onnxruntime.RunOptions()
+        options, names = onnxruntime.RunOptions(), list(self._config.output_names)
         options.log_severity_level = _FATAL
-        names, weights = list(self._config.output_names), self._config.components
-        shapes = ((weights,), (weights, weights), (len(UNUSUAL),))  # of location, factor and log-odds
         end = Timer(RUN_SECONDS, setattr, (options, "terminate", True))
         try:
             end.start()
-            read = {self._config.input_name: inputs[:, : self._read]}
+            read = {self._config.input_name: inputs[:, : self._columns]}
             outputs: list[Float32Array] = self._session.run(names, read, options)
         except _PROBLEMS as problem:
             raise ModelError("failing_graph", folder=self._folder, reason=problem) from None
         finally:
             end.cancel()
-        for number, (name, output) in enumerate(zip(names, outputs, strict=True)):
-            shape = (len(inputs) if number < 3 else 1, *shapes[number % 3])
+        self._check(outputs, len(inputs))
+        return outputs
+
+    def _check(self, outputs: list[Float32Array], rows: int) -> None:
+        """Refuse outputs that are not evidence of each row and, of a network that pools them, of all rows together."""
+        weights = self._config.components
+        shapes = ((weights,), (weights, weights), (len(UNUSUAL),))  # of location, factor and log-odds
+        for number, (name, output) in enumerate(zip(self._config.output_names, outputs, strict=True)):
+            shape = (rows if number < 3 else 1, *shapes[number % 3])
             if output.shape != shape or not np.isfinite(output).all():
                 raise ModelError("bad_output", folder=self._folder, name=name, shape=output.shape, needed=shape)
-        return outputs
 
 
 def _options(config: ModelConfig) -> Any:
