@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from typing import Any
 
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
 from crfnet_core.photograph.metadata.editors import editor_name, is_developer
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
@@ -17,9 +18,11 @@ from crfnet_core.photograph.metadata.jpeg import ijg_quality
 ADOBE = "a program of Adobe"
 ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".heif", ".webp", ".avif", ".jxl")
 
-#: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
-#: 18:9 to 20:9 are the screens of phones. And how far from the ratio in EXIF: scaled sides are rounded.
+#: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, as a part of
+#: it. 18:9 to 20:9 are the screens of phones.
 SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "2:1": (2.1, 0.07)}
+
+#: How far a scaled picture may be from the shape in EXIF, since its sides are rounded; farther off, it was cut.
 SAME_SHAPE = 0.02
 
 #: Longest side in pixels below which a picture counts as scaled, unless EXIF has the same size and both sides are whole
@@ -30,9 +33,11 @@ SCALED_BELOW, WEB_SIDES = 1600, (1600, 1920, 2048)
 #: The longer and the shorter side of a camera's picture are multiples of these; since 2004 it has this many pixels.
 NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 
-#: From the first quality on the tables of the IJG library are nearly all ones, as in many cameras. Messengers and web
-#: sites send copies of at most the second; pages of photographers have 90 and more.
-INDISTINCT_QUALITY, SENT_QUALITY = 98, 85
+#: From this quality on the tables of the IJG library are nearly all ones, as in many cameras.
+INDISTINCT_QUALITY = 98
+
+#: Messengers and web sites send copies of at most this quality; pages of photographers have 90 and more.
+SENT_QUALITY = 85
 
 
 class Encoding(StrEnum):
@@ -115,9 +120,14 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one."""
+    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one.
+
+    Raise PhotoError if it is not a device.
+    """
     if origin.renderer:
         return origin
+    if device not in list(Device):
+        raise PhotoError("not_a_device", device=repr(device), names=", ".join(kind.name for kind in Device))
     device = Device(device)
     words = (f"taken with {_DEVICES.get(device, 'a camera')}", *origin.words[1:])
     return replace(origin, device=device, is_told=True, words=words)
@@ -144,60 +154,82 @@ def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | N
     """Return whether a program encoded a JPEG file, by its segments and tables; None if they do not show it."""
     if metadata.file_format != "JPEG" or not metadata.luma_table:
         return None
+    if metadata.has_adobe:
+        return True
     is_ijg = quality is not None and quality < INDISTINCT_QUALITY
     if not metadata.has_camera:
-        return True if is_ijg or metadata.has_adobe else None
-    if is_ijg or metadata.has_jfif or metadata.has_adobe:
-        return True if metadata.has_adobe or (is_ijg and metadata.has_jfif and device != Device.PHONE) else None
-    return False
+        return True if is_ijg else None
+    if is_ijg and metadata.has_jfif:
+        return None if device == Device.PHONE else True  # phones use the library themselves
+    return None if is_ijg or metadata.has_jfif else False
 
 
 def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
-    size = sorted((metadata.width, metadata.height))
-    exif_size = sorted(metadata.exif_size or ())
-    if size[0] <= 0:
+    shorter, longer = size = tuple(sorted((metadata.width, metadata.height)))
+    exif_size = tuple(sorted(metadata.exif_size or size))
+    if shorter <= 0:
         return None
-    if exif_size and exif_size != size:
-        ratios = size[0] / exif_size[0], size[1] / exif_size[1]
-        return True if size[1] > exif_size[1] or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
-    is_whole = (size[1] >= SCALED_BELOW and size[1] not in WEB_SIDES) or _is_in_blocks(*size)
-    if exif_size and metadata.has_camera and not is_changed and is_whole:  # programs that scale may rewrite the size
-        return False
+    if exif_size != size:
+        return _is_scaled_from(exif_size, size)
+    is_small, is_web_size = longer < SCALED_BELOW, longer in WEB_SIDES
+    is_in_blocks = longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
+    names_size = metadata.exif_size is not None and metadata.has_camera
+    if names_size and not is_changed and (is_in_blocks or not (is_small or is_web_size)):
+        return False  # not after a change: programs that scale may rewrite the size in EXIF
     if metadata.file_format in FOOTAGE:
         return None
-    if size[1] < SCALED_BELOW or (size[1] in WEB_SIDES and metadata.file_format == "JPEG" and not metadata.has_camera):
+    if is_small or (is_web_size and metadata.file_format == "JPEG" and not metadata.has_camera):
         return True
-    is_large, is_of_sensor = size[0] * size[1] >= NATIVE_PIXELS, picture_shape(*size) != "other"
-    return False if is_large and is_of_sensor and _is_in_blocks(*size) else None
+    is_native = shorter * longer >= NATIVE_PIXELS and picture_shape(*size) != "other" and is_in_blocks
+    return False if is_native else None
 
 
-def _is_in_blocks(shorter: int, longer: int) -> bool:
-    """Return whether the sides are multiples of a camera's blocks."""
-    return longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
+def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | None:
+    """Return whether a picture was scaled from another size, both (shorter, longer) side; None if it was cut."""
+    ratios = now[0] / before[0], now[1] / before[1]
+    return True if ratios[1] > 1 or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
 
 
 def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
     """Yield the words for an origin, one part of a sentence each."""
-    if origin.renderer or not origin.camera:
-        yield f"rendered by {origin.renderer}" if origin.renderer else "the file names no camera"
-    else:
-        yield f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
-    if origin.editor:
-        yield f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
-    elif origin.is_resaved is False:
-        yield "the file is as the camera wrote it"
-    elif origin.is_resaved and not origin.is_scaled:
-        quality = origin.jpeg_quality
-        yield "encoded again by a program" + (f", as JPEG of quality {quality}" if quality else "")
-    size, exif_size = (metadata.width, metadata.height), metadata.exif_size
-    if origin.is_scaled and exif_size and sorted(exif_size) != sorted(size):
-        before, now = (f"{width} x {height}" for width, height in (exif_size, size))
-        yield f"scaled from {before} to {now} pixels after the camera wrote it"
-    elif origin.is_scaled:
-        yield f"probably scaled after the camera wrote it: it has {size[0]} x {size[1]} pixels"
+    yield _maker_words(origin)
+    yield from filter(None, (_program_words(origin), _scaling_words(origin, metadata)))
     if metadata.is_turned:
         yield "turned upright, as the file asks"
-    if origin.encoding:
-        is_movie = origin.encoding == Encoding.MOVIE
-        yield "a frame of a movie" if is_movie else f"{metadata.file_format} files hold {origin.encoding}"
+    if origin.encoding == Encoding.MOVIE:
+        yield "a frame of a movie"
+    elif origin.encoding:
+        yield f"{metadata.file_format} files hold {origin.encoding}"
+
+
+def _maker_words(origin: FileOrigin) -> str:
+    """Return the renderer or the camera in words."""
+    if origin.renderer:
+        return f"rendered by {origin.renderer}"
+    if not origin.camera:
+        return "the file names no camera"
+    return f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
+
+
+def _program_words(origin: FileOrigin) -> str:
+    """Return the part of programs in words; empty if nothing is known of any, or scaling says it."""
+    if origin.editor:
+        return f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
+    if origin.is_resaved is False:
+        return "the file is as the camera wrote it"
+    if not origin.is_resaved or origin.is_scaled:
+        return ""
+    quality = f", as JPEG of quality {origin.jpeg_quality}" if origin.jpeg_quality else ""
+    return f"encoded again by a program{quality}"
+
+
+def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
+    """Return the scaling in words; empty without any."""
+    if not origin.is_scaled:
+        return ""
+    size, before = (metadata.width, metadata.height), metadata.exif_size
+    now = "{} x {} pixels".format(*size)
+    if before and sorted(before) != sorted(size):
+        return "scaled from {} x {} to {} after the camera wrote it".format(*before, now)
+    return f"probably scaled after the camera wrote it: it has {now}"
