@@ -1,26 +1,19 @@
 """From a photograph to its windows, and from the windows to evidence: all that an estimate needs of the pixels."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
+from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, file_origin, with_stated_device
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Levels, refuse_tagged
-from crfnet_core.posterior import Evidence
+from crfnet_core.photograph.thumbnail import thumbnail
 from crfnet_core.statistics.windows import Window, cut_windows, select_windows
-from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, counted_from
-
-#: Samples along each side of the thumbnails that recognize photographs of one scene.
-THUMBNAIL = 16
-
-#: Correlation of neighboring cells of a thumbnail below which there is no scene: 92 real photographs have at least
-#: 0.53, renderings of 20 scenes 0.37, and noise, also blurred over a fortieth of the frame, at most 0.22.
-LEAST_CORRELATION = 0.25
+from crfnet_core.types import Float32Array, Float64Array, Progress, counted_from
 
 #: Samples below or above these are clipped: half an 8-bit code from either end of the range.
 DARKEST, BRIGHTEST = 0.5 / 255, 254.5 / 255
@@ -33,28 +26,12 @@ class CutPhotograph:
     name: str
     windows: tuple[Window, ...]  # at least one
     samples: Float32Array  # (N, side, side, 3): pixels of the windows
-    thumbnail: Float64Array  # (16, 16): ranks of brightness, which no exposure or response changes
+    thumbnail: Float64Array  # (16, 16): see `crfnet_core.photograph.thumbnail`
     levels: Levels  # its darkest, its middle and its brightest samples
     make: str  # the camera's maker, as the file writes it; empty if metadata is ignored
     origin: FileOrigin | None  # how the file was made, by its metadata and the user; None if neither says anything
     is_gray: bool  # whether its three channels are equal
     clipped: float  # fraction of the samples of its windows at the ends of the range
-
-    @property
-    def is_noise(self) -> bool:
-        """Whether neighboring cells of the thumbnail are no more alike than any two: then it shows no scene."""
-        cells = self.thumbnail - self.thumbnail.mean()
-        products = (cells[1:] * cells[:-1]).mean() + (cells[:, 1:] * cells[:, :-1]).mean()
-        return bool(products / 2 < LEAST_CORRELATION * (cells**2).mean())
-
-
-@dataclass(frozen=True, eq=False)
-class AnalyzedPhotograph:
-    """A photograph and its evidence."""
-
-    photograph: CutPhotograph
-    evidence: Evidence  # how likely each response makes the photograph
-    window_evidences: tuple[Evidence, ...]  # the same for each of its windows alone
 
 
 #: One photograph or several; those that are cut already need no memory for their pixels.
@@ -77,7 +54,7 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
         name=photo.path.name,
         windows=windows,
         samples=samples,
-        thumbnail=_thumbnail(photo),
+        thumbnail=thumbnail(photo),
         levels=Levels.from_pixels(photo),
         make="" if metadata is None else metadata.make,
         origin=_origin(metadata, options.device),
@@ -86,35 +63,36 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
     )
 
 
-def analyze_photographs(
-    photos: Photographs,
-    *,
-    network: ResponseNetwork,
-    options: AnalysisOptions | None = None,
-    progress: Progress | None = None,
-) -> tuple[AnalyzedPhotograph, ...]:
-    """Return the evidence of each photograph; `estimate_response` explains the parameters and the errors."""
-    cut = [photo if isinstance(photo, CutPhotograph) else cut_photograph(photo, options) for photo in _each(photos)]
-    if not cut:
-        raise PhotoError("no_photographs")
-    total, done = sum(len(photograph.samples) for photograph in cut), 0
-    analyzed = []
-    for photograph in cut:
-        predictions = network.predict(photograph.samples, progress=counted_from(progress, done, total))
-        analyzed.append(AnalyzedPhotograph(photograph, predictions.pooled, predictions.windows))
-        done += len(photograph.samples)
-    return tuple(analyzed)
-
-
-def _each(photos: Photographs) -> Iterator[Photo | CutPhotograph]:
-    """Yield the photographs one by one; refuse everything else, such as a file's name or an array."""
+def cut_photographs(photos: Photographs, options: AnalysisOptions | None = None) -> tuple[CutPhotograph, ...]:
+    """Return the windows of one or several photographs; raise PhotoError for anything else, such as a file's name."""
     several: Iterable[object] = (photos,)
     if isinstance(photos, Iterable) and not isinstance(photos, str | np.ndarray):
         several = photos
-    for photo in several:
-        if not isinstance(photo, Photo | CutPhotograph):
-            raise PhotoError("not_a_photo", kind=type(photo).__name__)
-        yield photo
+    photographs = tuple(_cut(photo, options) for photo in several)
+    if not photographs:
+        raise PhotoError("no_photographs")
+    return photographs
+
+
+def predict_evidence(
+    photographs: Sequence[CutPhotograph], network: ResponseNetwork, *, progress: Progress | None = None
+) -> tuple[Predictions, ...]:
+    """Return the evidence in each photograph; `progress` counts the windows of all."""
+    total, done = sum(len(photograph.samples) for photograph in photographs), 0
+    predictions = []
+    for photograph in photographs:
+        predictions.append(network.predict(photograph.samples, progress=counted_from(progress, done, total)))
+        done += len(photograph.samples)
+    return tuple(predictions)
+
+
+def _cut(photo: object, options: AnalysisOptions | None) -> CutPhotograph:
+    """Return the windows of a photograph, which may be cut already."""
+    if isinstance(photo, CutPhotograph):
+        return photo
+    if isinstance(photo, Photo):
+        return cut_photograph(photo, options)
+    raise PhotoError("not_a_photo", kind=type(photo).__name__)
 
 
 def _selected_windows(photo: Photo, options: AnalysisOptions) -> tuple[Window, ...]:
@@ -126,20 +104,7 @@ def _selected_windows(photo: Photo, options: AnalysisOptions) -> tuple[Window, .
 
 
 def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin | None:
-    """Return how a photograph was made; None if nothing is known."""
-    if device is None:
-        return None if metadata is None else file_origin(metadata)
-    try:
+    """Return how a photograph was made, by its metadata and the user; None if neither says anything."""
+    if device is not None:
         return with_stated_device(file_origin(metadata or FileMetadata()), device)
-    except ValueError:
-        names = ", ".join(kind.name for kind in Device)
-        raise PhotoError("not_a_device", device=repr(device), names=names) from None
-
-
-def _thumbnail(pixels: Pixels) -> Float64Array:
-    """Return ranks of brightness on a coarse grid, shape (16, 16)."""
-    rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
-    samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
-    cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
-    ranks: Float64Array = cells.ravel().argsort(kind="stable").argsort().reshape(cells.shape).astype(np.float64)
-    return ranks
+    return None if metadata is None else file_origin(metadata)

@@ -3,18 +3,20 @@
 `estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from crfnet_core.errors import Notice, PriorError
-from crfnet_core.estimate.analysis import AnalyzedPhotograph, CutPhotograph, Photographs, analyze_photographs
+from crfnet_core.estimate.analysis import CutPhotograph, Photographs, cut_photographs, predict_evidence
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate, WindowEstimate
-from crfnet_core.network import ResponseNetwork, pooling
+from crfnet_core.network import Predictions, ResponseNetwork
+from crfnet_core.network.pooling import agreeing
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Levels, Recognition, log_factor, recognize
+from crfnet_core.photograph.thumbnail import is_noise, scene_similarities
 from crfnet_core.posterior import (
     Family,
     Posterior,
@@ -23,7 +25,6 @@ from crfnet_core.posterior import (
     Verdict,
     independent_fraction,
     metadata_factors,
-    scene_similarities,
 )
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Progress
@@ -75,35 +76,25 @@ def estimate_response(
     """
     if prior is not None and not isinstance(prior, Prior):
         raise PriorError("not_a_prior", kind=type(prior).__name__)
-    analyzed = analyze_photographs(photos, network=network, options=options, progress=progress)
-    return estimate_from_evidence(analyzed, model=network.config.label, prior=prior, bank=bank)
-
-
-def estimate_from_evidence(
-    analyzed: Sequence[AnalyzedPhotograph], *, model: str, prior: Prior | None = None, bank: ResponseBank | None = None
-) -> ResponseEstimate:
-    """Return the response of the camera that took photographs, at least one, that one network has analyzed.
-
-    `model` is the label of this network; `prior` and `bank` are as of `estimate_response`.
-    """
-    bank = bank or ResponseBank.load()
-    photographs = [one.photograph for one in analyzed]
+    photographs = cut_photographs(photos, options)
+    predictions = predict_evidence(photographs, network, progress=progress)
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
-    prior = _informed(prior or Prior.load(), origins, levels)
+    bank, prior = bank or ResponseBank.load(), _informed(prior or Prior.load(), origins, levels)
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
-    posterior = Posterior.from_evidences(bank, prior, [one.evidence for one in analyzed], independent=independent)
+    evidences = [prediction.pooled for prediction in predictions]
+    posterior = Posterior.from_evidences(bank, prior, evidences, independent=independent)
     recognition = recognize(
         levels,
         log_probability=posterior.families[Family.LOG],
-        is_noise=all(photograph.is_noise for photograph in photographs),
+        is_noise=all(is_noise(photograph.thumbnail) for photograph in photographs),
         makes=tuple(photograph.make for photograph in photographs),
         origins=origins,
     )
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
-        windows=_window_estimates(analyzed, bank, prior),
+        windows=tuple(_window_estimates(photographs, predictions, bank, prior)),
         uncertainty=posterior.expected_error,
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
@@ -111,8 +102,10 @@ def estimate_from_evidence(
         verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition, has_own_answer=posterior.answer is not None),
-        model=model,
+        warnings=_warnings(
+            photographs, origins, recognition, is_answer_of_windows=posterior.network_answer is not None
+        ),
+        model=network.config.label,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
     )
@@ -134,16 +127,14 @@ def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Pr
 
 
 def _window_estimates(
-    analyzed: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
-) -> tuple[WindowEstimate, ...]:
-    """Return the estimate of each window alone, in the order of the photographs."""
-    estimates = []
-    for number, one in enumerate(analyzed):
-        agrees = pooling.agreeing(one.window_evidences).tolist()
-        for window, evidence, is_kept in zip(one.photograph.windows, one.window_evidences, agrees, strict=True):
+    photographs: Sequence[CutPhotograph], predictions: Sequence[Predictions], bank: ResponseBank, prior: Prior
+) -> Iterator[WindowEstimate]:
+    """Yield the estimate of each window alone, in the order of the photographs."""
+    for number, (photograph, prediction) in enumerate(zip(photographs, predictions, strict=True)):
+        agrees = agreeing(prediction.windows).tolist()
+        for window, evidence, is_kept in zip(photograph.windows, prediction.windows, agrees, strict=True):
             alone = Posterior.from_evidences(bank, prior, [evidence])
-            estimates.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, is_kept))
-    return tuple(estimates)
+            yield WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, is_kept)
 
 
 def _warnings(
@@ -151,7 +142,7 @@ def _warnings(
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
     *,
-    has_own_answer: bool,
+    is_answer_of_windows: bool,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
     warnings = input_warnings(recognition, origins)
@@ -160,7 +151,7 @@ def _warnings(
         warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
     if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
         warnings.append(Notice("clipped"))
-    if has_own_answer:
+    if is_answer_of_windows:
         warnings.append(Notice("answer_of_windows"))
     windows = [window for photograph in photographs for window in photograph.windows]
     if not any(window.covers_range for window in windows):

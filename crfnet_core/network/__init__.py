@@ -7,7 +7,8 @@ pooling      the paper's way from the windows' evidence to a photograph's, for a
 runtime      onnxruntime, imported with its telemetry switched off
 """
 
-from crfnet_core.network.inference import ResponseNetwork
+from crfnet_core.network.inference import Predictions, ResponseNetwork
 from crfnet_core.network.model import DEFAULT_MODEL, MODELS, ModelConfig, model_folder, packaged_models
 
-__all__ = ["DEFAULT_MODEL", "MODELS", "ModelConfig", "ResponseNetwork", "model_folder", "packaged_models"]
+__all__ = ["DEFAULT_MODEL", "MODELS", "ModelConfig", "Predictions", "ResponseNetwork", "model_folder"]
+__all__ += ["packaged_models"]

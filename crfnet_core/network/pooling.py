@@ -1,6 +1,6 @@
 """Pool the evidence of windows as the CRF-net paper does: remove outliers, then take the mean.
 
-Only a network without learned pooling is pooled this way. `inliers` runs for every network, because the report counts
+Only a network without learned pooling is pooled this way. `agreeing` runs for every network, because the report counts
 the windows that agree.
 """
 
@@ -9,25 +9,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from crfnet_core.posterior import Evidence
-from crfnet_core.types import BoolArray, Float64Array
+from crfnet_core.types import BoolArray
 
 #: A window is an outlier when its estimate lies farther than this many median distances from the median estimate.
 OUTLIER_FACTOR = 2.0
 
 
-def inliers(weights: Float64Array) -> BoolArray:
-    """Return which windows agree with the others, shape (N,), from EMoR weights (N, K): Eq. 20 of docs/METHOD.md.
-
-    The distance of each estimate from the component-wise median is an E_est between two responses, since the basis
-    is orthonormal. Those up to `OUTLIER_FACTOR` times the median distance stay: always at least half of them.
-    """
-    distances = np.linalg.norm(weights - np.median(weights, axis=0), axis=1)
-    return np.asarray(distances <= OUTLIER_FACTOR * np.median(distances))
-
-
 def agreeing(windows: Sequence[Evidence]) -> BoolArray:
-    """Return which windows of a photograph agree with the others, by the locations of their evidence, shape (N,)."""
-    return inliers(np.stack([evidence.location for evidence in windows]))
+    """Return which windows of a photograph agree with the others, shape (N,): Eq. 20 of docs/METHOD.md.
+
+    The distance of a location from the component-wise median is an E_est between two responses, since the basis is
+    orthonormal. Windows up to `OUTLIER_FACTOR` times the median distance agree: always at least half of them.
+    """
+    locations = np.stack([evidence.location for evidence in windows])
+    distances = np.linalg.norm(locations - np.median(locations, axis=0), axis=1)
+    return np.asarray(distances <= OUTLIER_FACTOR * np.median(distances))
 
 
 def robust_mean(windows: Sequence[Evidence]) -> Evidence:

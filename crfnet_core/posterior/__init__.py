@@ -5,11 +5,12 @@
 - `prior`: how likely each family is before the photograph is looked at.
 - `factors`: how metadata shifts the prior.
 - `evidence`: a network's reading of a photograph, as a likelihood of responses.
-- `posterior`: prior times evidence, the answer (the mean in log irradiance), and its expected errors.
+- `log_weights`: prior times evidence, in logarithms.
+- `posterior`: the answer (the mean in log irradiance), its expected errors and its band.
 - `verdict`: the posterior in one word.
 """
 
-from crfnet_core.posterior.evidence import Evidence, independent_fraction, scene_similarities
+from crfnet_core.posterior.evidence import Evidence, independent_fraction
 from crfnet_core.posterior.factors import metadata_factors
 from crfnet_core.posterior.families import IN_CAMERA, UNUSUAL, Family, LikelyKind
 from crfnet_core.posterior.posterior import Posterior
@@ -18,4 +19,4 @@ from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
 from crfnet_core.posterior.verdict import Verdict
 
 __all__ = ["BANK_FILE", "IN_CAMERA", "UNUSUAL", "Evidence", "Family", "LikelyKind", "Posterior", "Prior"]
-__all__ += ["ResponseBank", "Verdict", "independent_fraction", "metadata_factors", "scene_similarities"]
+__all__ += ["ResponseBank", "Verdict", "independent_fraction", "metadata_factors"]

@@ -1,6 +1,5 @@
 """The evidence of a photograph: the likelihood of each response, as the network reads it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,18 +57,3 @@ def independent_fraction(similarities: Float64Array) -> float:
     photographs count as n^2 / sum(r) independent ones: n if all differ, one if all are alike.
     """
     return float(len(similarities) / np.sum(similarities))
-
-
-def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
-    """Return the similarities of the scenes of photographs, shape (n, n): correlations of thumbnails, at least 0.
-
-    A thumbnail, shape (16, 16), holds ranks of brightness on a coarse grid, which no exposure or response changes.
-    """
-    if len(thumbnails) == 1:
-        return np.ones((1, 1))
-    rows = np.stack([thumbnail.ravel() for thumbnail in thumbnails])
-    rows = rows - rows.mean(axis=1, keepdims=True)
-    lengths = np.maximum(np.linalg.norm(rows, axis=1), 1e-9)
-    similarities = np.maximum(rows @ rows.T / np.outer(lengths, lengths), 0)
-    np.fill_diagonal(similarities, 1)
-    return np.asarray(similarities)

@@ -1,14 +1,15 @@
-"""The posterior: prior times evidence over the bank; its answer, errors and band."""
+"""The posterior: a probability of every response of the bank; the answer, its expected errors and its band."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from crfnet_core.posterior.evidence import Evidence
-from crfnet_core.posterior.families import UNUSUAL, Family
+from crfnet_core.posterior.families import Family
+from crfnet_core.posterior.log_weights import LogWeights, log_sum
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
@@ -30,11 +31,11 @@ class Posterior(EqualByFields):
     bank: ResponseBank
     weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
     unexplained: float  # the probability that none of them is, plain responses included
-    prior: Prior | None = None  # the knowledge before photographs were seen; None if there were none
+    prior: Prior | None  # the knowledge before photographs were seen; None if there were none
     #: (6,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
     #: count in the expected errors and the band, and among the unexplained, and never in the answer.
-    plain: Float64Array = field(default_factory=lambda: np.zeros(len(ResponseBank.plain().families)))
-    answer: Float64Array | None = None  # (11,): the network's own answer in EMoR weights; None of evidence on fewer
+    plain: Float64Array
+    network_answer: Float64Array | None  # (11,): the network's own answer in EMoR weights; None of evidence on fewer
 
     @classmethod
     def from_evidences(
@@ -44,28 +45,19 @@ class Posterior(EqualByFields):
 
         `independent` is the fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
         """
-        logarithms = _log_prior(bank, prior)
-        unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
-        count = len(ResponseBank.plain().families)
-        plain = np.full(count, _log(prior.plain / count))
+        logs = LogWeights.from_prior(bank, prior)
         if evidences:
-            likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
-            log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
-            before = logarithms[bank.ordinary]
-            average = _log_sum(before + likelihoods[bank.ordinary]) - _log_sum(before)
-            gains = dict(zip(UNUSUAL, _bounded(log_odds - average, prior.lookalikes), strict=True))
-            logarithms = _with_evidence(bank, logarithms, prior.evidence * likelihoods, gains)
-            unexplained += float(gains[Family.UNEXPLAINED])
-            emor = ResponseBank.plain().weights
-            stated = np.sum([evidence.ordinary_log_likelihoods(emor) for evidence in evidences], axis=0)
-            plain += _plain_gains(plain, independent * stated, average, prior.lookalikes)
-        explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
-        weights = np.exp(logarithms - explained)
-        probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
-        plain_weights = np.exp(plain - np.logaddexp(explained, plain_sum)) if prior.plain else np.zeros(len(plain))
+            logs = logs.with_evidence(evidences, prior, independent=independent)
+        explained, plain = log_sum(logs.responses), log_sum(logs.plain)
         answers = [evidence.location for evidence in evidences if evidence.is_answer]
-        answer = np.mean(answers, axis=0) if answers else None
-        return cls(bank, weights, probability, prior if evidences else None, plain_weights, answer)
+        return cls(
+            bank=bank,
+            weights=np.exp(logs.responses - explained),
+            unexplained=float(1 / (1 + np.exp(min(explained - np.logaddexp(logs.unexplained, plain), 700.0)))),
+            prior=prior if evidences else None,
+            plain=np.exp(logs.plain - np.logaddexp(explained, plain)) if prior.plain else np.zeros(len(logs.plain)),
+            network_answer=np.mean(answers, axis=0) if answers else None,
+        )
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -83,8 +75,8 @@ class Posterior(EqualByFields):
         Linear and log members count only if no other does: no answer lies between them and the others in the
         middle, and where they win, the answer is not to be trusted anyway.
         """
-        if self.answer is not None:
-            return ResponseCurve.from_samples(EmorBasis.load().reconstruct(self.answer))
+        if self.network_answer is not None:
+            return ResponseCurve.from_samples(EmorBasis.load().reconstruct(self.network_answer))
         ordinary = np.where(self.bank.ordinary, self.weights, 0)
         weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
         irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
@@ -97,7 +89,7 @@ class Posterior(EqualByFields):
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         answer = self.curve.brightness
         spread = self._expected(lambda bank: bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1))
-        if self.prior is None or self.prior.evidence in (0, 1) or self.answer is not None:
+        if self.prior is None or self.prior.evidence in (0, 1) or self.network_answer is not None:
             return spread
         moved = estimation_error(Posterior.from_evidences(self.bank, self.prior).curve, self.curve)
         doubt = (1 - self.prior.evidence) / 2
@@ -122,7 +114,7 @@ class Posterior(EqualByFields):
     @cached_property
     def mean_weights(self) -> Float64Array:
         """The mean EMoR weights, or the network's own answer, shape (11,)."""
-        return self.weights @ self.bank.weights if self.answer is None else self.answer
+        return self.weights @ self.bank.weights if self.network_answer is None else self.network_answer
 
     @cached_property
     def expected_distance(self) -> float:
@@ -143,22 +135,6 @@ class Posterior(EqualByFields):
         return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
 
 
-def _with_evidence(
-    bank: ResponseBank, logarithms: Float64Array, likelihoods: Float64Array, gains: Mapping[Family, float]
-) -> Float64Array:
-    """Return the log probabilities of responses, (N,), after evidence: its log likelihoods, (N,), and families' gains.
-
-    Among ordinary responses the likelihoods, which have the prior's exponent, move probability, whose total stays.
-    Unusual families gain on the average of ordinary responses.
-    """
-    moved = logarithms.copy()
-    before, after = logarithms[bank.ordinary], logarithms[bank.ordinary] + likelihoods[bank.ordinary]
-    moved[bank.ordinary] = after + _log_sum(before) - _log_sum(after)
-    for family, gain in gains.items():
-        moved[bank.members(family)] += gain
-    return moved
-
-
 def _weighed(
     weights: Float64Array, responses: Float32Array, function: Callable[[Float64Array], Float64Array]
 ) -> Float64Array:
@@ -166,41 +142,3 @@ def _weighed(
     starts = range(0, len(weights), ROWS)
     parts = ((weights[start : start + ROWS], responses[start : start + ROWS].astype(np.float64)) for start in starts)
     return np.asarray(sum(some @ function(rows) for some, rows in parts))
-
-
-def _log_sum(logarithms: Float64Array) -> float:
-    """Return the logarithm of a sum of numbers, from their logarithms."""
-    largest = logarithms.max()
-    return float(largest + np.log(np.exp(logarithms - largest).sum()))
-
-
-def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
-    """Return log odds of unusual families, if a share of ordinary photographs looks to the network as unusual ones do.
-
-    Such photographs add to the likelihood of ordinary responses: the odds x become x / (1 - lookalikes + lookalikes x).
-    """
-    return log_odds - np.logaddexp(np.log1p(-lookalikes), _log(lookalikes) + log_odds)
-
-
-def _plain_gains(plain: Float64Array, likelihoods: Float64Array, average: float, lookalikes: float) -> Float64Array:
-    """Return what plain responses gain: together as an unusual family, among themselves by their likelihoods in full.
-
-    `plain` are the logarithms of their prior, and `average` is that of the mean likelihood of ordinary responses.
-    """
-    mean = _log_sum(plain + likelihoods) - _log_sum(plain)
-    return likelihoods - mean + _bounded(np.array(mean - average), lookalikes)
-
-
-def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:
-    """Return the logarithm of every response's probability before a photograph is seen, shape (N,): Eq. 22."""
-    logarithms = np.empty(len(bank.families))
-    for family in Family:
-        members = bank.members(family)
-        if members.any():
-            logarithms[members] = _log(prior.shares.get(family, 0.0) / members.sum())
-    return logarithms
-
-
-def _log(share: float) -> float:
-    """Return the logarithm of a share; for 0 it is so low that no evidence brings it back."""
-    return float(np.log(max(share, 1e-300)))

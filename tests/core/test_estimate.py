@@ -13,7 +13,7 @@ from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.network.inference import Predictions
-from crfnet_core.network.pooling import inliers, robust_mean
+from crfnet_core.network.pooling import agreeing, robust_mean
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.photo import Photo
@@ -68,8 +68,8 @@ CENTER = np.array([1.0, -0.5, 0.0, 0.0, 0.0])
 
 
 def test_outliers_are_those_beyond_twice_the_median_distance():
-    kept = inliers(rows_around(CENTER, [-0.2, -0.1, 0.0, 0.1, 0.25, 3.0]))
-    assert kept.tolist() == [True, True, True, True, True, False]
+    windows = [evidence_for(row) for row in rows_around(CENTER, [-0.2, -0.1, 0.0, 0.1, 0.25, 3.0])]
+    assert agreeing(windows).tolist() == [True, True, True, True, True, False]
 
 
 def test_a_network_without_pooling_is_pooled_by_the_rule(bank):

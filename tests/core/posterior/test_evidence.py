@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_fraction, scene_similarities
+from crfnet_core.photograph.thumbnail import scene_similarities
+from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_fraction
 
 
 def test_likelihoods_are_student_s_t_or_the_odds_that_are_stated_for_a_family(bank):

@@ -1,0 +1,42 @@
+"""Thumbnails: a photograph's scene in 16 x 16 cells, by which noise and photographs of one scene are recognized."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from crfnet_core.types import Float64Array, Pixels
+
+#: Cells along each side.
+SIDE = 16
+
+#: Correlation of neighboring cells below which there is no scene: 92 real photographs have at least 0.53, renderings of
+#: 20 scenes 0.37, and noise, also blurred over a fortieth of the frame, at most 0.22.
+LEAST_CORRELATION = 0.25
+
+
+def thumbnail(pixels: Pixels) -> Float64Array:
+    """Return ranks of brightness on a coarse grid, shape (16, 16), which no exposure or response changes."""
+    rows, columns = (np.linspace(0, side - 1, 4 * SIDE).round().astype(int) for side in pixels.shape[:2])
+    samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
+    cells = samples.reshape(SIDE, 4, SIDE, 4).mean(axis=(1, 3))
+    ranks: Float64Array = cells.ravel().argsort(kind="stable").argsort().reshape(cells.shape).astype(np.float64)
+    return ranks
+
+
+def is_noise(cells: Float64Array) -> bool:
+    """Return whether neighboring cells of a thumbnail are hardly more alike than any two: then it shows no scene."""
+    centered = cells - cells.mean()
+    products = (centered[1:] * centered[:-1]).mean() + (centered[:, 1:] * centered[:, :-1]).mean()
+    return bool(products / 2 < LEAST_CORRELATION * (centered**2).mean())
+
+
+def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
+    """Return the similarities of the scenes of photographs, shape (n, n): correlations of thumbnails, at least 0."""
+    if len(thumbnails) == 1:
+        return np.ones((1, 1))
+    rows = np.stack([cells.ravel() for cells in thumbnails])
+    rows = rows - rows.mean(axis=1, keepdims=True)
+    lengths = np.maximum(np.linalg.norm(rows, axis=1), 1e-9)
+    similarities = np.maximum(rows @ rows.T / np.outer(lengths, lengths), 0)
+    np.fill_diagonal(similarities, 1)
+    return np.asarray(similarities)
