@@ -12,7 +12,7 @@ from crfnet_core.posterior.families import Family
 from crfnet_core.posterior.log_weights import LogWeights, log_sum
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from crfnet_core.types import EqualByFields, Float32Array, Float64Array
@@ -81,8 +81,7 @@ class Posterior(EqualByFields):
         weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
         irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
         irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
-        uniform = np.linspace(0, 1, SAMPLES)
-        return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
+        return ResponseCurve.from_samples(np.interp(UNIFORM, np.maximum.accumulate(irradiance), UNIFORM))
 
     @cached_property
     def expected_error(self) -> float:
@@ -98,8 +97,7 @@ class Posterior(EqualByFields):
     @cached_property
     def expected_shape_error(self) -> float:
         """The expected shape error of the answer, in stops: Eq. 28 of docs/METHOD.md."""
-        codes = np.linspace(0, 1, SAMPLES)[SHAPE_SAMPLES]
-        answer = np.log2(self.curve.inverse(codes))
+        answer = np.log2(self.curve.inverse(UNIFORM[SHAPE_SAMPLES]))
         return self._expected(
             lambda bank: bank.log_irradiance[:, SHAPE_SAMPLES], lambda rows: (rows - answer).std(axis=1)
         )
@@ -131,8 +129,7 @@ class Posterior(EqualByFields):
         cumulative = np.cumsum(weights, axis=1) - weights / 2
         levels = ((1 - BAND) / 2, (1 + BAND) / 2)
         ends = [[np.interp(level, *knot) for knot in zip(cumulative, ordered, strict=True)] for level in levels]
-        uniform = np.arange(SAMPLES)
-        return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
+        return np.stack([np.interp(np.arange(SAMPLES), BAND_SAMPLES, end) for end in ends])
 
 
 def _weighed(

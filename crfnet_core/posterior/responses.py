@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.posterior.families import UNUSUAL, Family
-from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.curve import SAMPLES, UNIFORM
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
@@ -44,9 +44,8 @@ class ResponseBank(EqualByFields):
     @cache
     def plain(cls) -> ResponseBank:
         """Return the responses of pictures without a camera's tone curve, such as renders: powers, sRGB and Rec.709."""
-        irradiance = np.linspace(0, 1, SAMPLES)
-        powers = [irradiance ** (1 / power) for power in (1.8, 2.0, 2.2, 2.4)]
-        encoded = np.stack([*powers, srgb_encode(irradiance), rec709_encode(irradiance)]).astype(np.float32)
+        powers = [UNIFORM ** (1 / power) for power in (1.8, 2.0, 2.2, 2.4)]
+        encoded = np.stack([*powers, srgb_encode(UNIFORM), rec709_encode(UNIFORM)]).astype(np.float32)
         return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
 
     @classmethod
@@ -89,11 +88,10 @@ class ResponseBank(EqualByFields):
     @cached_property
     def log_irradiance(self) -> Float32Array:
         """Logarithms, base 2, of the inverse responses at 1024 uniform brightnesses, shape (N, 1024)."""
-        codes = np.linspace(0, 1, SAMPLES)
         rising = np.linspace(0, 1e-6, SAMPLES)  # makes flat parts strictly increasing
         logarithms = np.empty_like(self.brightness)
         for row, into in zip(self.brightness, logarithms, strict=True):
-            into[:] = np.log2(np.maximum(np.interp(codes, (row + rising) / (1 + 1e-6), codes), LEAST_IRRADIANCE))
+            into[:] = np.log2(np.maximum(np.interp(UNIFORM, (row + rising) / (1 + 1e-6), UNIFORM), LEAST_IRRADIANCE))
         return logarithms
 
     @cached_property

@@ -16,6 +16,10 @@ from crfnet_core.types import EqualByFields, Float32Array, Float64Array, IndexAr
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
 SAMPLES = 1024
 
+#: As many uniform numbers from 0 to 1, read-only: irradiances of a response, or brightnesses of an inverse response.
+UNIFORM = np.linspace(0, 1, SAMPLES)
+UNIFORM.flags.writeable = False
+
 #: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
 LEAST_SLOPE = 1e-4
 
@@ -90,11 +94,10 @@ class ResponseCurve(EqualByFields):
             raise CurveError("curve_samples")
         if values[-1] <= values[0]:
             raise CurveError("curve_dark")
-        uniform = np.linspace(0, 1, SAMPLES)
         if values.size != SAMPLES:
-            values = np.interp(uniform, np.linspace(0, 1, values.size), values)
+            values = np.interp(UNIFORM, np.linspace(0, 1, values.size), values)
         scaled = np.clip((values - values[0]) / (values[-1] - values[0]), 0, 1)
-        strict = (1 - LEAST_SLOPE) * nearest_increasing(scaled) + LEAST_SLOPE * uniform
+        strict = (1 - LEAST_SLOPE) * nearest_increasing(scaled) + LEAST_SLOPE * UNIFORM
         return cls((strict - strict[0]) / (strict[-1] - strict[0]))
 
     @classmethod
@@ -116,14 +119,12 @@ class ResponseCurve(EqualByFields):
         """
         if not exponent > 0:
             raise CurveError("curve_exponent", exponent=exponent)
-        return cls.from_samples(np.linspace(0, 1, SAMPLES) ** (1 / exponent))
+        return cls.from_samples(UNIFORM ** (1 / exponent))
 
-    @cached_property
+    @property
     def irradiance(self) -> Float64Array:
         """The irradiances of the samples, uniform from 0 to 1: float64, shape (1024,), read-only."""
-        uniform = np.linspace(0, 1, SAMPLES)
-        uniform.flags.writeable = False
-        return uniform
+        return UNIFORM
 
     @overload
     def forward(self, irradiance: float) -> float: ...

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from crfnet_core.statistics.sampling import CODES
 from crfnet_core.types import Float32Array
@@ -44,9 +44,8 @@ def candidate_responses() -> CandidateResponses:
     weights = np.zeros((CANDIDATE_COUNT, COMPONENTS))
     weights[:, :2] = [(first, second) for first in FIRST_WEIGHTS for second in SECOND_WEIGHTS]
     curves = [ResponseCurve.from_samples(samples) for samples in EmorBasis.load().reconstruct(weights)]
-    uniform = np.linspace(0, 1, len(curves[0].brightness))
-    mixed = [(1 - IDENTITY_FRACTION) * curve.brightness + IDENTITY_FRACTION * uniform for curve in curves]
-    irradiance = np.stack([np.interp(np.linspace(0, 1, CODES), curve, uniform) for curve in mixed], axis=1)
+    mixed = [(1 - IDENTITY_FRACTION) * curve.brightness + IDENTITY_FRACTION * UNIFORM for curve in curves]
+    irradiance = np.stack([np.interp(np.linspace(0, 1, CODES), curve, UNIFORM) for curve in mixed], axis=1)
     slope = np.gradient(irradiance, axis=0)
     positive = np.maximum(irradiance, irradiance[1])
     log_variance = (slope / positive) ** 2 / 6  # two roundings of variance 1 / 12

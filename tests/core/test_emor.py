@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.curve import SAMPLES, UNIFORM
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 
 
@@ -31,7 +31,7 @@ def test_project_undoes_reconstruct():
 def test_a_basis_of_curves_explains_them_in_order():
     rng = np.random.default_rng(2)
     exponents = np.exp(rng.normal(0, 0.4, 40))
-    curves = np.linspace(0, 1, SAMPLES) ** exponents[:, None]
+    curves = UNIFORM ** exponents[:, None]
     basis = EmorBasis.from_curves(curves)
     spread = np.var(basis.project(curves), axis=0)
     assert (np.diff(spread) <= 0).all()

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import beside_limits
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 
 STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
@@ -35,7 +35,7 @@ def test_the_shape_error_of_two_powers():
 
 def test_the_shape_error_ignores_the_exposure_which_is_the_scale_error():
     """f(E) = 2 E until it clips: the linear light of codes below white is off by one stop everywhere."""
-    clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
+    clipped = ResponseCurve.from_samples(np.minimum(2 * UNIFORM, 1))
     assert estimation_error(STRAIGHT, clipped) > 5
     assert shape_error(STRAIGHT, clipped) < 2e-3
     assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)

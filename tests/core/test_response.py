@@ -5,12 +5,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from crfnet_core.errors import CurveError
-from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
+from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, UNIFORM, ResponseCurve, nearest_increasing
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from tests.helpers.refusals import refused
-
-UNIFORM = np.linspace(0, 1, SAMPLES)
 
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from crfnet_core.posterior import Evidence, Family, Prior, ResponseBank
+from crfnet_core.response.curve import UNIFORM
 
 #: Exponents of the responses of `small_bank`: a response is a power of irradiance.
 SMALL_BANK = {
@@ -16,10 +17,9 @@ SMALL_BANK = {
 
 def small_bank():
     """Return a bank of ten powers of irradiance, in five families."""
-    irradiance = np.linspace(0, 1, 1024)
     powers = [power for family in SMALL_BANK.values() for power in family]
     families = tuple(family for family, members in SMALL_BANK.items() for _ in members)
-    return ResponseBank(np.stack([irradiance**power for power in powers]).astype(np.float32), families)
+    return ResponseBank(np.stack([UNIFORM**power for power in powers]).astype(np.float32), families)
 
 
 def even_prior(*, evidence=1.0, unexplained=0.0):

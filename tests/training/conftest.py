@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from crfnet_core.response.curve import UNIFORM
+
 
 @pytest.fixture(scope="session")
 def scenes():
@@ -14,7 +16,7 @@ def scenes():
     rng = np.random.default_rng(0)
     ramp = np.linspace(0, 1.2, 260 * 300 * 3).reshape(260, 300, 3).transpose(2, 0, 1)
     pixels = tuple(torch.from_numpy((ramp * rng.uniform(0.8, 1.2, ramp.shape)).astype(np.float16)) for _ in range(2))
-    curves = np.linspace(0, 1, 1024) ** np.array([[0.3], [0.45], [0.7], [1.0]])
+    curves = UNIFORM ** np.array([[0.3], [0.45], [0.7], [1.0]])
     return TrainingScenes(pixels, torch.from_numpy(np.float32(curves)), torch.tensor([1, 1.1, 0.9, 1]))
 
 

@@ -9,14 +9,12 @@ import numpy as np
 import scipy.io
 from scipy.interpolate import PchipInterpolator
 
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array
 
 #: The files of responses in a data folder: DoRF, the published EMoR basis, and in-camera tone curves.
 DORF_FILE, EMOR_FILE, BASE_CURVES_FILE = "dorf/201_CRF_data.mat", "dorf/emor.txt", "camera_curves/base_curves.csv"
-
-IRRADIANCE = np.linspace(0, 1, SAMPLES)
 
 #: Returns a random response, shape (1024,), from 0 to 1.
 DrawResponse = Callable[[np.random.Generator], Float64Array]
@@ -41,14 +39,13 @@ def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:
 
 def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
     """Return f(E) = sRGB(base(min(1, s E))), divided by f(1), shape (1024,), for the headroom s."""
-    encoded = srgb_encode(np.clip(base(np.minimum(1, headroom * IRRADIANCE)), 0, 1))
+    encoded = srgb_encode(np.clip(base(np.minimum(1, headroom * UNIFORM)), 0, 1))
     return encoded / encoded[-1]
 
 
 def curve_of_inverse(irradiance: Float64Array) -> ResponseCurve:
     """Return the response whose inverse has these irradiances, shape (1023,), at the uniform brightnesses above 0."""
-    brightness = np.linspace(0, 1, SAMPLES)
-    return ResponseCurve.from_samples(np.interp(IRRADIANCE, np.concatenate([[0.0], irradiance]), brightness))
+    return ResponseCurve.from_samples(np.interp(UNIFORM, np.concatenate([[0.0], irradiance]), UNIFORM))
 
 
 def geometric_median(
@@ -96,4 +93,4 @@ class CurveSource:
     def _warped(self, curve: Float64Array, rng: np.random.Generator, sigma: float) -> Float64Array:
         """Return f(E ** p) ** q with log-normal powers."""
         p, q = np.exp(rng.normal(0, sigma, 2))
-        return np.interp(IRRADIANCE**p, IRRADIANCE, curve) ** q
+        return np.interp(UNIFORM**p, UNIFORM, curve) ** q

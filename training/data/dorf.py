@@ -14,8 +14,8 @@ import scipy.io
 
 from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE
 
 #: Number of curves in DoRF, and of lines of each.
 CURVES, LINES = 201, 6
@@ -41,7 +41,7 @@ def _curve(name: str, _graph: str, _i: str, irradiances: str, _b: str, brightnes
     is_rising = (np.diff(irradiance) > 0).all() and (np.diff(brightness) >= 0).all()
     if not (is_rising and np.allclose(samples[:, [0, -1]], [0, 1], rtol=0, atol=1e-6)):
         raise CurveError(f"{name}: is not a response from (0, 0) to (1, 1); download dorfCurves.txt again")
-    return np.interp(IRRADIANCE, irradiance, brightness)
+    return np.interp(UNIFORM, irradiance, brightness)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -51,7 +51,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("out", type=Path, metavar="201_CRF_data.mat")
     options = parser.parse_args(arguments)
     brightness = parse_dorf(options.source.read_text(encoding="latin-1"))
-    irradiance = np.broadcast_to(IRRADIANCE, brightness.shape)
+    irradiance = np.broadcast_to(UNIFORM, brightness.shape)
     with atomic_write(options.out) as temporary, temporary.open("wb") as file:
         scipy.io.savemat(file, {"I": irradiance.astype(np.float32), "B": brightness.astype(np.float32)})
     print(f"{options.out}: {len(brightness)} curves")

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.posterior import Family
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, CurveSource, curve_of_inverse
+from training.data.curves import CurveSource, curve_of_inverse
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -32,11 +32,10 @@ def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
     as it is; above, its logarithm is stretched so that it still ends at 1. `stops` may be negative, but must lie above
     log2 of the irradiance at the shoulder.
     """
-    brightness = np.linspace(0, 1, SAMPLES)
-    logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)
+    logarithm = np.log2(curve.inverse(UNIFORM[1:]))  # (1023,)
     at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
     top = logarithm * (at_shoulder - stops) / at_shoulder
-    moved = np.where(brightness[1:] <= SHOULDER, logarithm - stops, top)
+    moved = np.where(UNIFORM[1:] <= SHOULDER, logarithm - stops, top)
     return curve_of_inverse(np.exp2(moved))
 
 
@@ -64,8 +63,8 @@ def _edited(response: Float64Array, rng: np.random.Generator) -> Float64Array:
     brightness = brightness ** np.exp(amount * rng.normal(0, 0.2))
     contrast, pivot = amount * rng.normal(0, 0.3), rng.uniform(0.35, 0.65)
     bent = _s_curve(brightness, np.exp(contrast), pivot)
-    saturation = IRRADIANCE[np.argmax(bent >= bent[-1])]
-    bent = np.interp(IRRADIANCE * saturation, IRRADIANCE, bent)  # irradiance 1 is where white is reached
+    saturation = UNIFORM[np.argmax(bent >= bent[-1])]
+    bent = np.interp(UNIFORM * saturation, UNIFORM, bent)  # irradiance 1 is where white is reached
     return (bent - bent[0]) / (bent[-1] - bent[0])
 
 
@@ -79,7 +78,7 @@ def _s_curve(brightness: Float64Array, contrast: float, pivot: float) -> Float64
 def log_like(count: int, rng: np.random.Generator) -> Float64Array:
     """Return curves log(1 + a E) / log(1 + a) bent by a small power, shape (count, 1024)."""
     factor = _log_uniform(LOG_FACTORS, count, rng)
-    curves = np.log1p(factor * IRRADIANCE) / np.log1p(factor)
+    curves = np.log1p(factor * UNIFORM) / np.log1p(factor)
     return curves ** np.exp(rng.normal(0, 0.08, (count, 1)))
 
 
@@ -102,7 +101,7 @@ class ResponseFamilies:
         if family is Family.FILM:
             return np.stack([self.film.draw(rng) for _ in range(count)])
         if family is Family.LINEAR:
-            return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
+            return UNIFORM ** _log_uniform(LINEAR_POWERS, count, rng)
         if family is Family.LOG:
             return log_like(count, rng)
         if family is Family.DEVELOPED:

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from crfnet_core.posterior.responses import LEAST_IRRADIANCE
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, geometric_median
+from training.data.curves import geometric_median
 from training.data.real_photographs import Body
 
 #: The kinds of bodies that have a center of their own.
@@ -31,9 +31,6 @@ LEAST_DISTANCE = 0.03 * np.sqrt(SAMPLES - DARKEST)
 
 #: Standard deviation of the logarithm of a draw's distance from the mean: tails heavier than a Gaussian's.
 TAILS = 0.25
-
-#: Brightnesses at which inverse responses are compared.
-BRIGHTNESS = np.linspace(0, 1, SAMPLES)
 
 #: Standard deviation of the Gaussian that smooths measured responses, in samples (3 codes of 255), and how far a
 #: response is continued beyond its ends, mirrored in the end point, so that the end point stays.
@@ -72,11 +69,11 @@ class InCameraResponses:
 
 
 def log_irradiance(curve: ResponseCurve) -> Float64Array:
-    """Return log2 of the inverse response at `BRIGHTNESS`, shape (1024,), smooth from `DARKEST` on.
+    """Return log2 of the inverse response at uniform brightnesses, shape (1024,), smooth from `DARKEST` on.
 
     Measured responses have kinks where one method of measuring hands over to another, near white above all.
     """
-    logarithms = np.log2(np.maximum(curve.inverse(BRIGHTNESS), LEAST_IRRADIANCE))
+    logarithms = np.log2(np.maximum(curve.inverse(UNIFORM), LEAST_IRRADIANCE))
     bright = logarithms[DARKEST:]
     before, after = 2 * bright[0] - bright[REACH:0:-1], 2 * bright[-1] - bright[-2 : -REACH - 2 : -1]
     smooth = gaussian_filter1d(np.concatenate([before, bright, after]), SMOOTHING)
@@ -86,8 +83,8 @@ def log_irradiance(curve: ResponseCurve) -> Float64Array:
 def response_of(logarithms: Float64Array) -> Float64Array:
     """Return the response, shape (1024,), whose inverse has these log2 irradiances, made monotone."""
     irradiance = np.maximum.accumulate(np.exp2(logarithms))
-    irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0]) + 1e-7 * BRIGHTNESS
-    return np.interp(IRRADIANCE, irradiance / irradiance[-1], BRIGHTNESS)
+    irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0]) + 1e-7 * UNIFORM
+    return np.interp(UNIFORM, irradiance / irradiance[-1], UNIFORM)
 
 
 def _center(rows: Sequence[Float64Array]) -> Float64Array:

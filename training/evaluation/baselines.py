@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, curve_of_inverse, geometric_median
+from training.data.curves import curve_of_inverse, geometric_median
 from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
@@ -34,8 +34,8 @@ def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
     DoRF.
     """
     samples = {
-        "sRGB": srgb_encode(IRRADIANCE),
-        "Rec.709": rec709_encode(IRRADIANCE),
+        "sRGB": srgb_encode(UNIFORM),
+        "Rec.709": rec709_encode(UNIFORM),
         MEAN_CURVE: EmorBasis.load().mean,
         "geometric median curve": geometric_median(known),
     }
@@ -55,8 +55,8 @@ def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
 
 def nearest_power(true: ResponseCurve) -> ResponseCurve:
     """Return the power law E ** p, p from 0.02 to 5, of least E_est against a response."""
-    best = _nearest(lambda logarithm: IRRADIANCE ** np.exp(logarithm), true, (np.log(0.02), np.log(5)))
-    return ResponseCurve.from_samples(IRRADIANCE ** np.exp(best))
+    best = _nearest(lambda logarithm: UNIFORM ** np.exp(logarithm), true, (np.log(0.02), np.log(5)))
+    return ResponseCurve.from_samples(UNIFORM ** np.exp(best))
 
 
 def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
@@ -84,6 +84,5 @@ def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:
 
     In the logarithm of irradiance cameras differ by their shapes and by a constant, which is a factor on the exposure.
     """
-    brightness = np.linspace(0, 1, SAMPLES)
-    logarithms = [np.log(curve.inverse(brightness[1:])) for curve in curves]
+    logarithms = [np.log(curve.inverse(UNIFORM[1:])) for curve in curves]
     return curve_of_inverse(np.exp(np.mean(logarithms, axis=0)))

@@ -20,8 +20,7 @@ from matplotlib.figure import Figure
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.posterior import Prior
-from crfnet_core.response.curve import ResponseCurve
-from training.data.curves import IRRADIANCE
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.simulated import PAPER, PRIOR, WAYS, simulated_photo
 from training.evaluation.measure.table import TABLE_FILE, Table
@@ -164,7 +163,7 @@ def draw_curves(path: Path, report: Report, data: Path, table: Table) -> None:
         curves = {"truth": true} | answers | {GAMMA: ResponseCurve.gamma(2.2)}
         for (name, curve), color in zip(curves.items(), COLORS, strict=True):
             error = "" if name == "truth" else f", {np.linalg.norm(curve.brightness - true.brightness):.2f}"
-            axes.plot(IRRADIANCE, curve.brightness, color=color, label=name + error)
+            axes.plot(UNIFORM, curve.brightness, color=color, label=name + error)
         axes.set_xlabel("irradiance")
         axes.legend(fontsize=6, loc="lower right")
     figure.axes[0].set_ylabel("brightness")

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import norm
 
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import IRRADIANCE, read_dorf
+from training.data.curves import read_dorf
 from training.data.linear_files import read_raw
 from training.data.scenes import BAND, Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
@@ -116,11 +116,11 @@ def read_light(path: Path) -> Scene:
 
 def formula_curves() -> dict[str, Float64Array]:
     """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
-    basis, encoded = EmorBasis.load(), srgb_encode(IRRADIANCE)
+    basis, encoded = EmorBasis.load(), srgb_encode(UNIFORM)
     steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
-    samples = {f"gamma {power:g}": IRRADIANCE ** (1 / power) for power in (1.4, 1.8, 2.6)}
-    samples |= {f"log {a:g}": np.log1p(a * IRRADIANCE) for a in (8, 60)}
-    samples |= {"sRGB": encoded, "Rec.709": rec709_encode(IRRADIANCE), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
+    samples = {f"gamma {power:g}": UNIFORM ** (1 / power) for power in (1.4, 1.8, 2.6)}
+    samples |= {f"log {a:g}": np.log1p(a * UNIFORM) for a in (8, 60)}
+    samples |= {"sRGB": encoded, "Rec.709": rec709_encode(UNIFORM), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
     for name, weights in steps.items():
         samples[f"EMoR {name}"] = basis.reconstruct(np.pad(np.array(weights, dtype=float), (0, 11 - len(weights))))
     return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}

@@ -15,7 +15,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array, Uint8Array
 
@@ -79,8 +79,7 @@ def main() -> None:
     parser.add_argument("studio_light", type=Path, help="forest.exr of Blender's studio lights")
     folder = Path("tests/data")
     write_photograph(folder / "plate.jpg", photograph(read_scene(parser.parse_args().studio_light)))
-    irradiance = np.linspace(0, 1, SAMPLES)
-    samples = np.stack([irradiance, ResponseCurve.from_samples(camera_response(irradiance)).brightness], axis=1)
+    samples = np.stack([UNIFORM, ResponseCurve.from_samples(camera_response(UNIFORM)).brightness], axis=1)
     header = "irradiance,brightness"
     np.savetxt(folder / "plate_response.csv", samples, fmt="%.9g", delimiter=",", header=header, comments="")
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.statistics.windows import WINDOW_SIZE, filled_bins, filled_codes
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
-from training.data.curves import IRRADIANCE, DrawResponse
+from training.data.curves import DrawResponse
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
@@ -145,7 +146,7 @@ def _unusual_photograph(
     windows = _parts(light, rng)
     kind = kinds[int(rng.integers(len(kinds)))]
     codes = unusual_windows(kind, windows, random_exposure(windows, rng), rng)
-    return TrainingPhotograph(codes, IRRADIANCE, curve_set)
+    return TrainingPhotograph(codes, UNIFORM, curve_set)
 
 
 def _parts(light: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for
 
@@ -149,9 +149,8 @@ def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
 
 
 def test_the_band_holds_nine_tenths_of_the_weight():
-    irradiance = np.linspace(0, 1, 1024)
     powers = np.linspace(0.3, 0.8, 400)
-    bank = ResponseBank((irradiance ** powers[:, None]).astype(np.float32), (Family.CAMERA,) * 400)
+    bank = ResponseBank((UNIFORM ** powers[:, None]).astype(np.float32), (Family.CAMERA,) * 400)
     posterior = Posterior.from_evidences(bank, Prior("p", {Family.CAMERA: 1.0}, 1.0))
     lower, upper = posterior.band()
     assert lower.shape == upper.shape == (1024,)
@@ -173,7 +172,7 @@ def test_the_band_holds_nine_tenths_of_the_weight():
 )
 def test_the_verdict_follows_the_expected_stops_and_the_family(families, spread, expected):
     powers = 0.45 * np.exp([[-spread], [spread]])
-    bank = ResponseBank((np.linspace(0, 1, 1024) ** powers).astype(np.float32), families)
+    bank = ResponseBank((UNIFORM**powers).astype(np.float32), families)
     posterior = Posterior.from_evidences(bank, Prior("p", {families[0]: 1.0}, 1.0))
     assert Verdict.from_posterior(posterior) is expected
 

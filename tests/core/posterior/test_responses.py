@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.posterior import Family, ResponseBank
+from crfnet_core.response.curve import UNIFORM
 from tests.helpers.posteriors import SMALL_BANK, small_bank
 
 
@@ -31,6 +32,6 @@ def test_weights_and_logarithms_are_those_of_the_curves():
     powers = np.array([power for family in SMALL_BANK.values() for power in family])
     assert bank.weights.shape == (10, 11)
     assert bank.log_irradiance.shape == (10, 1024)
-    codes = np.linspace(0, 1, 1024)[400:]
+    codes = UNIFORM[400:]
     np.testing.assert_allclose(bank.log_irradiance[:, 400:], np.log2(codes) / powers[:, None], atol=2e-2)
     assert (bank.log_irradiance >= -16).all()

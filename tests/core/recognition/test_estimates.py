@@ -9,7 +9,7 @@ from crfnet_core import AnalysisOptions, Photo, ResponseNetwork, estimate_respon
 from crfnet_core.photograph.metadata import Device, Encoding, FileMetadata, file_origin
 from crfnet_core.photograph.recognition import Kind
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from crfnet_core.response.transfer_functions import srgb_encode
 from tests.helpers.footage import blurred, log_picture, ordinary_picture, quantized
@@ -83,7 +83,7 @@ def test_a_screenshot_is_not_to_be_trusted(network):
 @pytest.mark.parametrize("power", [1.8, 2.0, 2.2, 2.4, "sRGB"])
 def test_a_plain_render_is_not_to_be_trusted_and_its_error_is_stated(network, root, power):
     encode = srgb_encode if power == "sRGB" else lambda light: light ** (1 / power)
-    picture, true = rendered(root, encode), ResponseCurve.from_samples(encode(np.linspace(0, 1, 1024)))
+    picture, true = rendered(root, encode), ResponseCurve.from_samples(encode(UNIFORM))
     estimate = estimated(**picture, network=network)
     assert estimate.verdict is Verdict.DO_NOT_TRUST
     assert shape_error(true, estimate.curve) < 2 * estimate.shape_uncertainty

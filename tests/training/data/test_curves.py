@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.response.transfer_functions import srgb_encode
 from training.data.curves import CurveSource, camera_response, geometric_median, read_base_curves
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 @pytest.fixture

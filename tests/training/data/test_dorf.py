@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import CurveError
+from crfnet_core.response.curve import UNIFORM
 from training.data.curves import read_dorf
 from training.data.dorf import main, parse_dorf
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 def record(name, irradiance, brightness):

@@ -2,12 +2,10 @@ import numpy as np
 import pytest
 
 from crfnet_core.posterior import Family
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from training.data.curves import CurveSource
 from training.data.families import DEVELOPED_HEADROOM, SHOULDER, ResponseFamilies, developed, edited, with_headroom
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 #: Powers that stand for the in-camera responses of a kind.
 POWERS = {Family.PHONE: 0.4, Family.COMPACT: 0.45, Family.CAMERA: 0.5}

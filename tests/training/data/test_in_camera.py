@@ -1,11 +1,9 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from training.data.in_camera import KINDS, InCameraResponses, log_irradiance
 from training.data.real_photographs import Body
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 def body(key, kind, *powers):

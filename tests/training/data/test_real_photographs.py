@@ -5,11 +5,10 @@ import pytest
 
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
+from crfnet_core.response.curve import UNIFORM
 from tests.helpers.crafted_files import jpeg
 from training.data import real_photographs as module
 from training.data.real_photographs import RealPhotograph, measured_bodies, metadata_of_case
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 ROW = {
     "exif_make": "NIKON CORPORATION",

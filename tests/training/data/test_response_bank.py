@@ -3,12 +3,10 @@ import pytest
 import scipy.io
 
 from crfnet_core.posterior import Family, ResponseBank
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from training.data import response_bank
 from training.data.real_photographs import Body
 from training.data.response_bank import COUNTS, make_bank, write_bank
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 #: Powers of the responses in a small DoRF, of which the first is held out.
 DORF = np.linspace(0.3, 0.9, 6)

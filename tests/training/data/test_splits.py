@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import CRFNetError
+from crfnet_core.response.curve import UNIFORM
 from training.data import splits
 from training.data.splits import SPLITS_FILE, curve_groups, held_out_curves
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 def powers(*exponents):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response.curve import LEAST_SLOPE, ResponseCurve
+from crfnet_core.response.curve import LEAST_SLOPE, UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.families import with_headroom
 from training.data.scenes import LUMINANCE
@@ -13,8 +13,6 @@ from training.evaluation.baselines import (
     with_best_headroom,
 )
 from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, read_light
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 def test_baselines_against_gamma_2_2():

@@ -12,7 +12,7 @@ import scipy.io
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.posterior import IN_CAMERA, Posterior, Prior
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
@@ -21,8 +21,6 @@ from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set
 from training.export.model_card import accuracy, bodies_table
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 #: Exponents of the measured responses.
 POWERS = {"two": 1.8, "three": 1.4, "four": 2.6}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from training.evaluation.measure.figures import curve_figures
 from training.evaluation.measure.table import Table
@@ -85,7 +85,7 @@ def test_errors_are_those_of_the_metrics():
 def test_the_lower_part_of_a_response_may_be_scaled_to_fit():
     """The estimate clips a third of a stop too early, and is right otherwise."""
     true = ResponseCurve.gamma(2.2)
-    early = ResponseCurve.from_samples(np.minimum(np.linspace(0, 1, 1024) * 1.26, 1) ** (1 / 2.2))
+    early = ResponseCurve.from_samples(np.minimum(UNIFORM * 1.26, 1) ** (1 / 2.2))
     figures = curve_figures(true, early, np.arange(256))
     assert figures["lower"] > 1
     assert figures["partial"] < 0.05

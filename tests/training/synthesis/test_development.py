@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
+from crfnet_core.response.curve import UNIFORM
 from training.synthesis.camera import apply_response
 from training.synthesis.camera_draws import WINDOWS, FrameKind, Frames, draw_development
 from training.synthesis.development import Development, ToneMapping, develop, hue_kept, looked_up, point_sampled
 
-CURVE = np.linspace(0, 1, 1024) ** 0.45
+CURVE = UNIFORM**0.45
 
 
 @pytest.fixture

@@ -1,14 +1,13 @@
 import numpy as np
 import pytest
 
+from crfnet_core.response.curve import UNIFORM
 from training.data.curves import CurveSource
 from training.synthesis import augmentation
 from training.synthesis.augmentation import composited, recolor
 from training.synthesis.camera import reference_luminance
 from training.synthesis.camera_draws import WINDOWS
 from training.synthesis.photographs import LEAST_FILLED, ONE_CHANNEL, PhotographSource
-
-UNIFORM = np.linspace(0, 1, 1024)
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from crfnet_core.response.curve import UNIFORM
 from training.data.scenes import LUMINANCE, Scene
 from training.synthesis.camera import (
     TARGET_BRIGHTNESS,
@@ -14,7 +15,6 @@ from training.synthesis.camera import (
     simulate_capture,
 )
 
-UNIFORM = np.linspace(0, 1, 1024)
 CURVE = UNIFORM ** (1 / 2.2)
 
 #: Gains of a white balance that is off.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.types import Float64Array, IndexArray
@@ -51,7 +51,7 @@ def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexAr
 
 def _lower_error(true: ResponseCurve, estimated: ResponseCurve, scale: float = 1.0) -> float:
     """Return the E_est over the samples up to `PARTIAL_BRIGHTNESS`, of an estimate whose irradiance is scaled."""
-    irradiance = np.linspace(0, 1, SAMPLES)[true.brightness <= PARTIAL_BRIGHTNESS]
+    irradiance = UNIFORM[true.brightness <= PARTIAL_BRIGHTNESS]
     squares = (true.forward(irradiance) - estimated.forward(np.minimum(scale * irradiance, 1))) ** 2
     return float(np.sqrt(SAMPLES * np.mean(squares)))
 

@@ -8,16 +8,16 @@ import numpy as np
 from PIL import Image
 
 from crfnet_core.photograph.recognition import LOG_CURVES
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
-from training.data.curves import IRRADIANCE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, enlarged, jpeg_compressed
 from training.synthesis.demo_plate import camera_response
 
 #: The sRGB encoding as a response, at 1024 irradiances.
-SRGB = srgb_encode(IRRADIANCE)
+SRGB = srgb_encode(UNIFORM)
 
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
 ROLL_OFF, CONTRAST = (1.0, 3.5), (0.4, 1.0)
@@ -66,7 +66,7 @@ def log_footage(irradiance: Float32Array, rng: np.random.Generator) -> Float32Ar
 
 def near_linear(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return irradiance to a power near 1: data that nobody encoded."""
-    return apply_response(irradiance, IRRADIANCE ** rng.uniform(*POWERS))
+    return apply_response(irradiance, UNIFORM ** rng.uniform(*POWERS))
 
 
 def limited_range(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -92,7 +92,7 @@ def messenger(irradiance: Float32Array, rng: np.random.Generator) -> Float32Arra
 
 def encoded_codes(irradiance: Float32Array, curve: Float64Array) -> Uint8Array:
     """Return the 8-bit codes of irradiance under a response, by nearest entry: quicker than `apply_response`."""
-    table = codes_of(np.interp(np.linspace(0, 1, TABLE), IRRADIANCE, curve).astype(np.float32))
+    table = codes_of(np.interp(np.linspace(0, 1, TABLE), UNIFORM, curve).astype(np.float32))
     return table[(np.clip(irradiance, 0, 1) * np.float32(TABLE - 1) + np.float32(0.5)).astype(np.uint16)]
 
 
@@ -103,7 +103,7 @@ def camera_rendering(irradiance: Float32Array, rng: np.random.Generator) -> Floa
 
 def drawn_camera_curve(rng: np.random.Generator) -> Float64Array:
     """Return the response of a random ordinary camera, shape (1024,), by formula: it shows nothing of test cameras."""
-    return camera_response(IRRADIANCE, rng.uniform(*ROLL_OFF), rng.uniform(*CONTRAST))
+    return camera_response(UNIFORM, rng.uniform(*ROLL_OFF), rng.uniform(*CONTRAST))
 
 
 def saturated(pixels: Float32Array, factor: float) -> Float32Array:

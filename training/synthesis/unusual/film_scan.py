@@ -6,9 +6,9 @@ from typing import Self
 import numpy as np
 from PIL import Image, ImageDraw
 
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import IRRADIANCE
 from training.synthesis.camera import apply_response, blurred
 
 #: Density of the base of red, green and blue (the orange mask), and by how much it varies.
@@ -67,7 +67,7 @@ def film_scan(irradiance: Float32Array, rng: np.random.Generator) -> Float32Arra
         return np.clip(transmitted, 0, 1) ** np.float32(1 / rng.uniform(1.6, 2.4)) * (1 - dust)
     black = rng.normal(0.15, 0.04, 3).astype(np.float32)
     white = (film.density_range * rng.uniform(0.75, 1.0) * np.exp(rng.normal(0, 0.04, 3))).astype(np.float32)
-    positive = apply_response((density - black) / (white - black), IRRADIANCE ** rng.uniform(0.9, 1.8))
+    positive = apply_response((density - black) / (white - black), UNIFORM ** rng.uniform(0.9, 1.8))
     return positive + dust * (1 - positive)
 
 

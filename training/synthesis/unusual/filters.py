@@ -4,8 +4,8 @@ import numpy as np
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import IRRADIANCE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, blurred
 from training.synthesis.unusual.encodings import camera_rendering, codes_of, saturated
@@ -59,7 +59,7 @@ def cross_processed(rng: np.random.Generator) -> Float64Array:
 def _curves(nodes: Float64Array) -> Float64Array:
     """Return monotone curves, shape (3, 1024), through nodes (3, 5), which are put into order and into [0, 1]."""
     ordered = np.clip(np.maximum.accumulate(nodes, axis=1), 0, 1)
-    return np.stack([PchipInterpolator(NODES, row)(IRRADIANCE) for row in ordered])
+    return np.stack([PchipInterpolator(NODES, row)(UNIFORM) for row in ordered])
 
 
 def solarized(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -95,5 +95,5 @@ def false_color(irradiance: Float32Array, rng: np.random.Generator) -> Float32Ar
     colors = np.array(FALSE_COLORS[sorted(FALSE_COLORS)[rng.integers(len(FALSE_COLORS))]])
     position = (scale - np.float32(low)) / np.float32(max(high - low, 1e-6))
     nodes = np.linspace(0, 1, len(colors))
-    tables = (np.interp(IRRADIANCE, nodes, colors[:, k]) for k in range(3))
+    tables = (np.interp(UNIFORM, nodes, colors[:, k]) for k in range(3))
     return np.stack([apply_response(position, table) for table in tables], axis=-1)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.photograph.photo import Photo
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float32Array, Uint8Array
-from training.data.curves import IRRADIANCE
 from training.data.scenes import Scene
 from training.synthesis.camera import Capture, blurred, sensor_light, simulate_capture
 from training.synthesis.unusual.encodings import limited_range, log_footage, messenger, near_linear
@@ -106,7 +106,7 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
     if not recipe.is_compressed:
         capture = Capture()
     after = replace(capture, shot_noise=0.0, read_noise=0.0, blur=0.0)
-    return simulate_capture(recipe.rendering(irradiance, rng), IRRADIANCE, after, rng)
+    return simulate_capture(recipe.rendering(irradiance, rng), UNIFORM, after, rng)
 
 
 def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> Photo:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import IRRADIANCE
 from training.synthesis.camera import apply_response
 from training.synthesis.unusual.encodings import SRGB, saturated
 
@@ -69,7 +69,7 @@ def filmic(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     What Filmic does to the most saturated highlights is left out.
     """
     position = scaled_stops(irradiance * np.float32(np.exp2(rng.uniform(*RENDERING_STOPS))))
-    return apply_response(position, filmic_sigmoid(rng.uniform(1.73, 3.28))(IRRADIANCE))
+    return apply_response(position, filmic_sigmoid(rng.uniform(1.73, 3.28))(UNIFORM))
 
 
 def agx(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -78,9 +78,7 @@ def agx(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     A third has a look of other contrast or saturation. The compensation of negative values is left out: they clip.
     """
     exposed = irradiance * np.float32(np.exp2(rng.uniform(*RENDERING_STOPS)))
-    formed = apply_response(
-        scaled_stops(exposed @ (INSET @ REC2020).T.astype(np.float32)), AGX_SIGMOID(IRRADIANCE) ** 2.4
-    )
+    formed = apply_response(scaled_stops(exposed @ (INSET @ REC2020).T.astype(np.float32)), AGX_SIGMOID(UNIFORM) ** 2.4)
     linear = formed @ np.linalg.inv(OUTSET @ REC2020).T.astype(np.float32)
     if rng.random() < 1 / 3:
         linear = np.maximum(saturated(linear, rng.uniform(0.7, 1.5)), 0) ** np.float32(rng.uniform(0.8, 1.4))
