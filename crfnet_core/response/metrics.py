@@ -58,11 +58,6 @@ def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     return float(np.mean(_stops_off(true, estimated)))
 
 
-def peak_signal_to_noise(error: float) -> float:
-    """Return the PSNR in decibels of a linearization error above 0 (peak of the true linear image = 1)."""
-    return float(-20 * np.log10(error))
-
-
 def _stops_off(true: ResponseCurve, estimated: ResponseCurve) -> Float64Array:
     """Return log2(g_hat(B) / g(B)) at the 8-bit codes B from 16 to 240, shape (225,)."""
     brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255

@@ -51,11 +51,10 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
     only, so that they move no other.
     """
-    rows = table_rows(folder / "manifest.csv")
-    is_imported = [row.get("source", "").startswith(IMPORTED) for row in rows]
-    listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
-    scenes = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if not imported)
-    more = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if imported and with_imported)
+    listed: dict[bool, list[tuple[str, bool]]] = {False: [], True: []}
+    for row in table_rows(folder / "manifest.csv"):
+        listed[row.get("source", "").startswith(IMPORTED)].append((row["file"], row["kind"] == "panorama band"))
+    scenes, more = sorted(listed[False]), sorted(listed[True]) if with_imported else []
     rng = np.random.default_rng(SPLIT_SEED)
     panoramas = [scenes[i] for i in rng.permutation(len(scenes)) if scenes[i][1]]
     photographs = [scene for scene in scenes if not scene[1]]

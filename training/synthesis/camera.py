@@ -7,7 +7,6 @@ estimator reads it.
 
 import io
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -103,16 +102,14 @@ def render_photo(
     *,
     name: str,
     capture: Capture | None = None,
-    is_gray: bool = False,
 ) -> Photo:
     """Return the photograph of the light of `sensor_light`, as the estimator reads it from a file.
 
     `curve`, (1024,), is the response, and `exposure` the irradiance per unit of light; irradiance above 1 clips. By
-    default only the response and 8-bit rounding follow. `is_gray` states that all channels of the light are equal.
+    default only the response and 8-bit rounding follow.
     """
     codes = simulate_capture(light * np.float32(exposure), curve, capture or Capture(), rng)
-    pixels = np.divide(codes, np.float32(255), dtype=np.float32)
-    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(name))
+    return Photo.from_array(codes, color_order="RGB", name=name)
 
 
 def simulate_capture(
@@ -122,11 +119,7 @@ def simulate_capture(
 
     In this order: blur, shot and read noise, response, sharpening, grain, rounding, JPEG.
     """
-    irradiance = blurred(irradiance, capture.blur) if capture.blur else irradiance
-    if capture.shot_noise or capture.read_noise:
-        deviation = np.sqrt(capture.shot_noise * irradiance + capture.read_noise**2)
-        irradiance = irradiance + deviation * rng.standard_normal(irradiance.shape, dtype=np.float32)
-    brightness = apply_response(irradiance, curve)
+    brightness = apply_response(sensed(irradiance, capture, rng), curve)
     if capture.sharpening:
         brightness = brightness + capture.sharpening * (brightness - blurred(brightness, 0.8))
     if capture.grain:
@@ -135,6 +128,15 @@ def simulate_capture(
     if capture.jpeg_quality is None:
         return codes
     return jpeg_compressed(codes, quality=capture.jpeg_quality, subsampling=2 if capture.subsampled else 0)
+
+
+def sensed(irradiance: Float32Array, capture: Capture, rng: np.random.Generator) -> Float32Array:
+    """Return irradiance with a capture's blur and the noise of its sensor, not clipped."""
+    light = blurred(irradiance, capture.blur) if capture.blur else irradiance
+    if capture.shot_noise or capture.read_noise:
+        deviation = np.sqrt(capture.shot_noise * light + capture.read_noise**2)
+        light = light + deviation * rng.standard_normal(light.shape, dtype=np.float32)
+    return light
 
 
 def apply_response(irradiance: Float32Array, curve: Float64Array) -> Float32Array:

@@ -21,13 +21,6 @@ CURVE = UNIFORM ** (1 / 2.2)
 COOL = (0.6, 1.0, 1.7)
 
 
-@pytest.fixture
-def scene(rng):
-    y, x = np.mgrid[:60, :90] / 20
-    light = np.exp(np.sin(3 * x) + np.cos(2 * y))[:, :, None] * [1.0, 0.8, 0.6]
-    return Scene("made", light.astype(np.float32), False)
-
-
 def photo_of(scene, rng, exposure=0.2, **capture):
     return render_photo(sensor_light(scene, rng), CURVE, exposure, rng, name="made", capture=Capture(**capture))
 
@@ -48,7 +41,7 @@ def test_noise_has_its_variance_in_codes(rng):
 
 def test_gray_is_the_luminance_of_the_light(scene, rng):
     light = sensor_light(scene, rng, is_gray=True)
-    photo = render_photo(light, CURVE, 0.2, rng, name="made", is_gray=True)
+    photo = render_photo(light, CURVE, 0.2, rng, name="made")
     assert photo.is_gray
     assert (np.ptp(photo.pixels, axis=2) == 0).all()
     np.testing.assert_allclose(light[:, :, 0], scene.pixels @ LUMINANCE, rtol=1e-6)

@@ -142,7 +142,6 @@ def simulated_photo(test_set: TestSet, photograph: TestPhotograph) -> Photo:
         np.random.default_rng([SEED, scene, curve]),
         name=test_set.files[scene].name,
         capture=condition.capture,
-        is_gray=condition.is_gray and not condition.noise,
     )
 
 

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from crfnet_core.posterior import Verdict
-from crfnet_core.response.metrics import peak_signal_to_noise
 from crfnet_core.types import Float64Array
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure.figures import ERRORS, WEIGHTS
@@ -142,7 +141,7 @@ def _rounded(value: Any) -> Any:
 def _psnr(mean: Interval) -> Interval:
     """Return the PSNR in decibels of a mean E_lin, x 1e-2; a larger error has a smaller PSNR."""
     ends = (mean.value, mean.high, mean.low)
-    return Interval(*(peak_signal_to_noise(max(end, LEAST_LINEARIZATION) / 100) for end in ends))
+    return Interval(*(float(-20 * np.log10(max(end, LEAST_LINEARIZATION) / 100)) for end in ends))
 
 
 def _correlation(first: Float64Array, second: Float64Array, resampling: Resampling) -> Interval:

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from pathlib import Path
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from crfnet_core.photograph.photo import Photo
 from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float32Array, Uint8Array
 from training.data.scenes import Scene
-from training.synthesis.camera import Capture, blurred, sensor_light, simulate_capture
+from training.synthesis.camera import Capture, sensed, sensor_light, simulate_capture
 from training.synthesis.unusual.encodings import limited_range, log_footage, messenger, near_linear
 from training.synthesis.unusual.film_scan import film_scan
 from training.synthesis.unusual.filters import artistic_filter, false_color, palette, solarized
@@ -100,7 +99,7 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
     recipe, capture = RECIPES[kind], Capture.draw(rng)
     irradiance = light * np.float32(exposure)
     if recipe.is_recorded:
-        irradiance = _sensed(irradiance, capture, rng)
+        irradiance = np.maximum(sensed(irradiance, capture, rng), 0)
     else:
         capture = replace(capture, sharpening=0.0, grain=0.0)
     if not recipe.is_compressed:
@@ -113,9 +112,7 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> 
     """Return a whole frame of a kind at a `random_exposure`, as the estimator reads it from a file."""
     light = sensor_light(scene, rng)
     codes = unusual_windows(kind, light[None], random_exposure(light, rng), rng)[0]
-    is_gray = bool((codes == codes[..., :1]).all())
-    pixels = np.divide(codes, np.float32(255), dtype=np.float32)
-    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(f"{kind}, {scene.name}"))
+    return Photo.from_array(codes, color_order="RGB", name=f"{kind}, {scene.name}")
 
 
 def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
@@ -124,12 +121,3 @@ def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
     The light is linear, float32 (..., H, W, 3); the percentile is drawn from `SATURATED`.
     """
     return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
-
-
-def _sensed(irradiance: Float32Array, capture: Capture, rng: np.random.Generator) -> Float32Array:
-    """Return irradiance with the capture's blur and its noise of the sensor, not clipped above, nowhere negative."""
-    light = blurred(irradiance, capture.blur) if capture.blur else irradiance
-    if capture.shot_noise or capture.read_noise:
-        deviation = np.sqrt(capture.shot_noise * light + capture.read_noise**2)
-        light = light + deviation * rng.standard_normal(light.shape, dtype=np.float32)
-    return np.maximum(light, 0)
