@@ -7,7 +7,7 @@ import numpy as np
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response.emor import COMPONENTS
-from crfnet_core.types import EqualByFields, Float64Array
+from crfnet_core.types import Float64Array
 
 #: EMoR weights that evidence is about: the others hardly change a photograph. Evidence may be about all 11, too.
 EVIDENCE_WEIGHTS = 5
@@ -17,7 +17,7 @@ DEGREES_OF_FREEDOM = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence(EqualByFields):
+class Evidence:
     """A likelihood of responses, up to a factor.
 
     Of ordinary responses it is Student's t in their first K EMoR weights, 5 or 11. Of the families `UNUSUAL`, whose

@@ -15,7 +15,7 @@ from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, Respons
 from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
-from crfnet_core.types import EqualByFields, Float32Array, Float64Array
+from crfnet_core.types import Float32Array, Float64Array
 
 #: The fraction of the posterior that the band holds at every irradiance.
 BAND = 0.9
@@ -25,7 +25,7 @@ ROWS = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior(EqualByFields):
+class Posterior:
     """Weights over a bank of responses."""
 
     bank: ResponseBank

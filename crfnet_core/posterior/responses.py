@@ -13,7 +13,7 @@ from crfnet_core.response.curve import SAMPLES, UNIFORM
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
-from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray
+from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
 BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
@@ -34,7 +34,7 @@ BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseBank(EqualByFields):
+class ResponseBank:
     """Responses of every family; before a photograph is seen, all of one family are equally likely."""
 
     brightness: Float32Array  # (N, 1024): responses at uniform irradiances, non-decreasing from 0 to 1

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.response.curve import SAMPLES
-from crfnet_core.types import EqualByFields, Float64Array
+from crfnet_core.types import Float64Array
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
@@ -20,7 +20,7 @@ BASIS_FILE = Path(__file__).parents[1] / "data" / "emor.npz"
 
 
 @dataclass(frozen=True, eq=False)
-class EmorBasis(EqualByFields):
+class EmorBasis:
     """A mean response and orthonormal components: f = mean + weights @ components.
 
     `data/emor.npz` was computed from the 201 curves of DoRF (Grossberg & Nayar) by

@@ -15,9 +15,8 @@ from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.recognition import Kind, Recognition
-from crfnet_core.posterior import Family, Posterior, ResponseBank, Verdict
+from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 from tests.helpers.refusals import refused
 
 
@@ -71,16 +70,6 @@ def test_estimates_cannot_be_hashed_and_curves_can(estimate):
     assert curves[ResponseCurve.gamma(2.2)] == 2
     assert ResponseCurve.gamma(2.2) != ResponseCurve.gamma(2.21)
     assert ResponseCurve.gamma() != "curve"
-
-
-def test_posteriors_compare():
-    bank, weights = small_bank(), np.zeros(5)
-    one, same, other = (Posterior.from_evidences(bank, even_prior(), [evidence_for(weights + d)]) for d in (0, 0, 0.1))
-    assert one == same != other
-    assert evidence_for(weights) == evidence_for(weights) != evidence_for(weights + 0.1)
-    assert bank == small_bank() != ResponseBank(bank.brightness, bank.families[::-1])
-    assert len({id(one.curve), id(same.curve)}) == 2
-    assert one == deepcopy(one)
 
 
 def test_an_estimate_comes_back_from_json(estimate):

@@ -20,6 +20,14 @@ def scenes():
     return TrainingScenes(pixels, torch.from_numpy(np.float32(curves)), torch.tensor([1, 1.1, 0.9, 1]))
 
 
+@pytest.fixture(scope="session")
+def model(fixed_model):
+    """The fixed model, as an evaluation knows it."""
+    from training.evaluation.models import Model
+
+    return Model.find(str(fixed_model))
+
+
 @pytest.fixture
 def out(tmp_path):
     """The folder of imported scenes, which the import makes."""

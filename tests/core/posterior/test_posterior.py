@@ -26,18 +26,6 @@ def test_no_evidence_returns_the_prior(bank):
     assert posterior.families == pytest.approx(dict(prior.shares) | unknown)
 
 
-@pytest.mark.parametrize("number", [1, 3, 6])
-def test_sharp_evidence_at_a_response_returns_it(bank, number):
-    posterior = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[number], precision=300)])
-    true = curves(bank)[number]
-    assert posterior.weights[number] > 0.999
-    assert estimation_error(true, posterior.curve) < 0.1
-    assert shape_error(true, posterior.curve) < 0.01
-    assert posterior.expected_error < 0.05
-    assert posterior.families[bank.families[number]] > 0.999
-    np.testing.assert_allclose(posterior.mean_weights, bank.weights[number], atol=0.02)
-
-
 def test_two_photographs_multiply(bank):
     first, second = (evidence_for(bank.weights[number], precision=0.7) for number in (2, 5))
     prior = even_prior()

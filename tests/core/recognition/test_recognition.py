@@ -11,25 +11,16 @@ from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition import (
-    COLOR_SPACES,
-    LOG_CURVES,
-    Kind,
-    Levels,
-    Recognition,
-    is_limited_range,
-    light_error,
-    log_factor,
-    nearest_curves,
-    recognize,
-    refuse_tagged,
-)
-from crfnet_core.photograph.recognition.levels import BEYOND, BLACKS, WHITES, quantile
+from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES, Kind, Recognition, recognize, refuse_tagged
+from crfnet_core.photograph.recognition.levels import BEYOND, BLACKS, WHITES, Levels, is_limited_range, quantile
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
     LIFTED_BLACK,
     LOW_WHITE_FACTOR,
+    light_error,
+    log_factor,
+    nearest_curves,
 )
 from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image

@@ -109,13 +109,6 @@ def test_the_first_stage_learns(scenes):
     assert min(losses) < 0.8 * losses[0]
 
 
-def test_a_run_logs_and_is_recorded(run):
-    header, row = (run / "log.csv").read_text().splitlines()
-    assert header == "step,train_loss,validation"
-    assert row.startswith("2,")
-    assert read_run(run)["recipe"]["recipe"]["batch"] == 2
-
-
 def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run, tmp_path):
     train(scenes, validation, tmp_path, REGRESSION, digest="data", stop=1)
     first, before = states(tmp_path)
@@ -137,6 +130,7 @@ def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys
     monkeypatch.setattr("sys.argv", [*options, str(tmp_path)])
     command.main()
     assert capsys.readouterr().out.startswith("step,train_loss,validation\n1,")
+    assert read_run(tmp_path)["recipe"]["recipe"]["batch"] == 2
     assert load_network(tmp_path).network.head.out_features == 11
 
 
@@ -154,18 +148,11 @@ def test_the_second_stage_takes_all_but_the_head(tmp_path):
     assert not second.head.weight.any()
 
 
-def test_the_model_folder_says_what_torch_says(model):
+def test_the_model_folder_answers_what_torch_answers(model):
     assert assert_parity(model, model / "golden.npz") < PARITY
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
-
-
-def test_the_product_answers_with_the_weights_of_the_network(model, run):
-    windows = np.random.default_rng(0).random((2, 227, 227, 3), np.float32)
-    with torch.inference_mode():
-        answers = rounded(load_network(run))(torch.from_numpy(windows))[0].numpy()
-    evidence = ResponseNetwork.load(model).predict(windows).windows
-    np.testing.assert_allclose([one.location for one in evidence], answers, atol=1e-3)
-    assert all(one.is_answer for one in evidence)
+    windows = np.full((2, 227, 227, 3), 0.5, np.float32)
+    assert all(one.is_answer for one in ResponseNetwork.load(model).predict(windows).windows)
 
 
 def test_an_answer_is_worth_what_its_errors_on_validation_windows_allow(scenes, run):

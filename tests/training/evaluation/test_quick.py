@@ -10,7 +10,6 @@ from crfnet_core.network import DEFAULT_MODEL
 from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import simulated
 from training.evaluation.measure.simulated import simulated_photo
-from training.evaluation.models import Model
 from training.evaluation.plan import CLEAN, RESOLUTIONS, Condition, TestPhotograph
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.report.document import read_report
@@ -22,11 +21,6 @@ EXPECTED = {"14fa0631c1d8": {"E_est mean": 1.6195, "E_lin mean": 3.7092, "E_est 
 
 #: The change that rounding on other processors may make: a few windows of a few photographs.
 PLATFORM = 0.03
-
-
-@pytest.fixture(scope="module")
-def model(fixed_model):
-    return Model.find(str(fixed_model))
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,6 @@ from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
 from training.evaluation.measure.real import cached_bank, mean_of_other_bodies, ways_of, without_exif
-from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set
 from training.export.model_card import accuracy, bodies_table
@@ -30,11 +29,6 @@ WAYS = ways_of("fixed_model")
 
 #: Columns of the list of data/real_bodies that hold the origin of a file, and the name of an editor.
 EXIF, EDITOR = ("exif_make", "exif_model", "exif_software", "original_size"), "Adobe Photoshop 23.1 (Macintosh)"
-
-
-@pytest.fixture(scope="module")
-def model(fixed_model):
-    return Model.find(str(fixed_model))
 
 
 @pytest.fixture(scope="module", autouse=True)

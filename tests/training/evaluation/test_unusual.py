@@ -4,15 +4,12 @@ from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.table import Table
 from training.evaluation.measure.unusual import WRITTEN, label, measure_unusual, ways_of
-from training.evaluation.models import Model
 from training.evaluation.report.cases import Cases
 from training.evaluation.report.rows import unusual_rows
 from training.synthesis.unusual import UnusualKind
 
 
-def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stated(
-    scene, fixed_model, tmp_path, monkeypatch
-):
+def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stated(scene, model, tmp_path, monkeypatch):
     asked, files = [], [SimpleNamespace(name=name, read=lambda: scene) for name in "ab"]
 
     def estimate(photo, *, network, options):
@@ -20,7 +17,7 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
         return SimpleNamespace(verdict=Verdict.USABLE if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
-    model, table = Model.find(str(fixed_model)), Table(tmp_path / "table", {})
+    table = Table(tmp_path / "table", {})
     measure_unusual(files, [model], table)
     stripped, expected = FileMetadata(file_format="PNG"), []
     for kind in UnusualKind:
