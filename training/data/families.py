@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.posterior import Family
+from crfnet_core.posterior import IN_CAMERA, Family
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
@@ -107,7 +107,6 @@ class ResponseFamilies:
         if family is Family.DEVELOPED:
             return developed(self.in_camera(Family.CAMERA, count, rng))
         if family is Family.EDITED:
-            kinds = (Family.PHONE, Family.COMPACT, Family.CAMERA)
-            drawn = [self.in_camera(kinds[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
+            drawn = [self.in_camera(IN_CAMERA[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
             return edited(np.stack(drawn), rng)
         return self.in_camera(family, count, rng)

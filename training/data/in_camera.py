@@ -7,14 +7,12 @@ from typing import Self
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from crfnet_core.posterior import IN_CAMERA
 from crfnet_core.posterior.responses import LEAST_IRRADIANCE
 from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import geometric_median
 from training.data.real_photographs import Body
-
-#: The kinds of bodies that have a center of their own.
-KINDS = ("phone", "compact", "camera")
 
 #: Components of the deviations; the first is mostly the headroom. With more nothing changed out of fold.
 COMPONENTS = 6
@@ -52,14 +50,14 @@ class InCameraResponses:
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}
         center = _center(list(rows.values()))
-        centers = {kind: _shrunk_center([rows[b.key] for b in bodies if b.kind == kind], center) for kind in KINDS}
+        centers = {kind: _shrunk_center([rows[b.key] for b in bodies if b.kind == kind], center) for kind in IN_CAMERA}
         deviations = {
             body.key: (stacks[body.key] - centers.get(body.kind, center)) / np.sqrt(len(stacks[body.key]))
             for body in bodies
         }
         components = _components(np.concatenate(list(deviations.values())), bodies=len(bodies))
         squares = {body.key: float((deviations[body.key] ** 2).sum()) for body in bodies}
-        return cls(centers, components, {kind: _spread(bodies, squares, kind) for kind in KINDS})
+        return cls(centers, components, {kind: _spread(bodies, squares, kind) for kind in IN_CAMERA})
 
     def draw(self, kind: str, count: int, rng: np.random.Generator) -> Float64Array:
         """Return responses of a kind, shape (count, 1024)."""
@@ -111,5 +109,5 @@ def _components(deviations: Float64Array, *, bodies: int) -> Float64Array:
     """Return the principal components of deviations (N, 1024), each one standard deviation long, shape (6, 1024)."""
     weights = np.where(np.arange(SAMPLES) < DARKEST, DARK_WEIGHT, 1.0)
     _, lengths, directions = np.linalg.svd(deviations * weights, full_matrices=False)
-    deviation = lengths[:COMPONENTS] / np.sqrt(max(bodies - len(KINDS) - 1, 1))
+    deviation = lengths[:COMPONENTS] / np.sqrt(max(bodies - len(IN_CAMERA) - 1, 1))
     return deviation[:, None] * directions[:COMPONENTS] / weights

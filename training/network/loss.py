@@ -10,6 +10,9 @@ from training.network.model import EvidenceTensors
 #: relative to the negative logarithm of its density.
 WINDOW_WEIGHT, ERROR_WEIGHT = 0.3, 0.5
 
+#: The number of the families of ordinary responses; the others' evidence is one number each.
+ORDINARY = 0
+
 
 class EvidenceLoss:
     """How probable evidence makes the truth among responses that the training photographs have.
@@ -60,10 +63,6 @@ class EvidenceLoss:
         """Return the distance between the mean over the ordinary responses and the truth, shape (N,)."""
         posterior = scores.masked_fill(~self.is_ordinary, -torch.inf).softmax(1)
         return ((posterior @ self.weights - weights) ** 2).sum(1).add(1e-6).sqrt()
-
-
-#: The number of the families of ordinary responses; the others' evidence is one number each.
-ORDINARY = 0
 
 
 def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:

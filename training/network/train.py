@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 from tqdm import tqdm
 
-from training.network.loss import EvidenceLoss
+from training.network.loss import ORDINARY, EvidenceLoss
 from training.network.model import NetworkConfig, PhotographNet
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
 from training.network.start import start_from, start_record
@@ -91,7 +91,7 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             families = shards.families[rows]
             _, evidence = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
             losses.append(loss.of_each(evidence, weights, families))
-            errors.append(loss.errors(evidence, weights)[families == 0])
+            errors.append(loss.errors(evidence, weights)[families == ORDINARY])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
 
 

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from crfnet_core.posterior import IN_CAMERA
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
-from training.data.in_camera import KINDS, InCameraResponses, log_irradiance
+from training.data.in_camera import InCameraResponses, log_irradiance
 from training.data.real_photographs import Body
 
 
@@ -27,8 +28,8 @@ def middle(curves):
 
 def test_kinds_have_their_own_centers_and_spread(bodies):
     found = InCameraResponses.from_bodies(bodies)
-    assert set(found.centers) == set(KINDS)
-    drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in KINDS}
+    assert set(found.centers) == set(IN_CAMERA)
+    drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in IN_CAMERA}
     centers = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
     assert centers == sorted(centers)
     assert centers == pytest.approx([0.36, 0.42, 0.48], abs=0.02)
@@ -46,7 +47,7 @@ def test_draws_rise_from_0_to_1_and_depend_on_the_seed_alone(bodies):
 def test_a_body_counts_once_however_many_stacks_it_has(bodies):
     many = [*bodies, body("x", "camera", *[0.6] * 20)]
     one = [*bodies, body("x", "camera", 0.6)]
-    for kind in KINDS:
+    for kind in IN_CAMERA:
         np.testing.assert_allclose(
             InCameraResponses.from_bodies(many).centers[kind], InCameraResponses.from_bodies(one).centers[kind]
         )
