@@ -74,11 +74,8 @@ def test_nearest_increasing_is_the_projection(samples):
 @pytest.mark.parametrize(
     ("make", "argument", "code"),
     [
-        (ResponseCurve.from_samples, [0.0], "curve_samples"),
-        (ResponseCurve.from_samples, [0.0, np.nan, 1.0], "curve_samples"),
-        (ResponseCurve.from_samples, [[0.0, 1.0]], "curve_samples"),
-        (ResponseCurve.from_samples, [1.0, 0.0], "curve_dark"),
-        (ResponseCurve.from_samples, [0.5, 0.5], "curve_dark"),
+        *((ResponseCurve.from_samples, row, "curve_samples") for row in ([0.0], [0.0, np.nan, 1.0], [[0.0, 1.0]])),
+        *((ResponseCurve.from_samples, row, "curve_dark") for row in ([1.0, 0.0], [0.5, 0.5])),
         (ResponseCurve, np.zeros(SAMPLES), "curve_not_strict"),
         (ResponseCurve, np.linspace(0, 1, 10), "curve_shape"),
         (ResponseCurve.gamma, 0, "curve_exponent"),

@@ -55,11 +55,8 @@ def test_a_poor_photograph_gets_the_best_windows_there_are():
 @pytest.mark.parametrize(
     ("height", "width", "count", "code"),
     [
-        (226, 500, 1, "smaller_than_window"),
-        (500, 226, 1, "smaller_than_window"),
-        (1, 1, 1, "smaller_than_window"),
-        (300, 300, 0, "no_windows_asked"),
-        (300, 300, -3, "no_windows_asked"),
+        *((height, width, 1, "smaller_than_window") for height, width in ((226, 500), (500, 226), (1, 1))),
+        *((300, 300, count, "no_windows_asked") for count in (0, -3)),
     ],
 )
 def test_windows_that_cannot_be_cut_are_refused(height, width, count, code):

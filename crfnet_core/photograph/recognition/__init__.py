@@ -6,10 +6,10 @@ log_curves      the published curves of log footage, and their names in ACES con
 recognition     the detected kind, in words, with advice; refuses encodings with a published curve
 """
 
-from crfnet_core.photograph.recognition.levels import Levels, is_limited_range
-from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES, LOG_CURVES, LogCurve
-from crfnet_core.photograph.recognition.log_footage import light_error, log_factor, nearest_curves
+from crfnet_core.photograph.recognition.levels import Levels
+from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES, LOG_CURVES
+from crfnet_core.photograph.recognition.log_footage import log_factor
 from crfnet_core.photograph.recognition.recognition import Kind, Recognition, recognize, refuse_linear, refuse_tagged
 
-__all__ = ["COLOR_SPACES", "LOG_CURVES", "Kind", "Levels", "LogCurve", "Recognition", "is_limited_range", "light_error"]
-__all__ += ["log_factor", "nearest_curves", "recognize", "refuse_linear", "refuse_tagged"]
+__all__ = ["COLOR_SPACES", "LOG_CURVES", "Kind", "Levels", "Recognition", "log_factor", "recognize", "refuse_linear"]
+__all__ += ["refuse_tagged"]

@@ -41,25 +41,22 @@ def test_factors_shift_the_shares():
     assert prior.reweighted({}).shares == pytest.approx(prior.shares)
 
 
-@pytest.mark.parametrize(
-    ("entries", "code"),
-    [
-        ("{", "prior_not_json"),
-        ('{"shares": {"phone": NaN}, "evidence": 1}', "prior_not_json"),
-        ([1], "bad_prior"),
-        ({"shares": {"phone": 1}}, "bad_prior"),
-        ({"shares": {"phone": 1}, "evidence": 1, "more": 1}, "bad_prior"),
-        ({"shares": [0.5], "evidence": 1}, "bad_prior_families"),
-        ({"shares": {"telephone": 1}, "evidence": 1}, "bad_prior_families"),
-        ({"shares": {"phone": -0.1}, "evidence": 1}, "bad_prior_values"),
-        ({"shares": {"phone": 1}, "evidence": 1.5}, "bad_prior_values"),
-        ({"shares": {"phone": 1}, "evidence": 1, "plain": -0.1}, "bad_prior_values"),
-        ({"shares": {"phone": "1"}, "evidence": 1}, "bad_prior_values"),
-        ({"shares": {"phone": 0, "log": 0}, "evidence": 1}, "bad_prior_values"),
-        ({"shares": {"phone": 1}, "evidence": 1, "lookalikes": 1}, "bad_lookalikes"),
-    ],
-)
-def test_a_file_that_describes_no_prior_is_refused_in_one_line(tmp_path, entries, code):
+#: A prior of phones alone, and for each code entries of a file that are refused.
+PHONE = {"shares": {"phone": 1}, "evidence": 1}
+REFUSED = {
+    "prior_not_json": ("{", '{"shares": {"phone": NaN}, "evidence": 1}'),
+    "bad_prior": ([1], {"shares": {"phone": 1}}, PHONE | {"more": 1}),
+    "bad_prior_families": (PHONE | {"shares": [0.5]}, PHONE | {"shares": {"telephone": 1}}),
+    "bad_prior_values": (
+        *(PHONE | {"shares": shares} for shares in ({"phone": -0.1}, {"phone": "1"}, {"phone": 0, "log": 0})),
+        *(PHONE | {"evidence": 1.5}, PHONE | {"plain": -0.1}),
+    ),
+    "bad_lookalikes": (PHONE | {"lookalikes": 1},),
+}
+
+
+@pytest.mark.parametrize(("code", "entries"), [(code, each) for code, several in REFUSED.items() for each in several])
+def test_a_file_that_describes_no_prior_is_refused_in_one_line(tmp_path, code, entries):
     path = written(tmp_path, entries)
     with refused(PriorError, code, path=path):
         Prior.load(path)

@@ -39,17 +39,19 @@ def test_samples_at_other_irradiances_are_interpolated():
     np.testing.assert_allclose(values[[0, 33, 682, 1023]], [0, 3 * 33 / 1023, 0.75 + (2 / 3 - 0.25) / 3, 1])
 
 
+def test_a_text_that_is_cut_short_is_refused():
+    with pytest.raises(CurveError, match="1204 lines instead of 201 curves"):
+        parse_dorf(all_records("a\nlin\nI =\n0 1\n"))
+
+
 @pytest.mark.parametrize(
-    ("last", "message"),
+    ("irradiances", "brightnesses", "message"),
     [
-        ("a\nlin\nI =\n0 1\n", "1204 lines instead of 201 curves"),
-        ("a\nlin\nI =\n0 0.5 1\nB =\n0 1\n", "a: two rows of as many numbers"),
-        ("a\nlin\nI =\n0 1\nB =\n0 one\n", "a: two rows of as many numbers"),
-        ("a\nlin\nI =\n0 1\nB =\n0 nan\n", "a: is not a response"),
-        ("a\nlin\nI =\n0 0.7 0.6 1\nB =\n0 0.2 0.4 1\n", "a: is not a response"),
-        ("a\nlin\nI =\n0 0.5 1\nB =\n0 0.8 0.9\n", "a: is not a response"),
+        *(("0 0.5 1", "0 1", "two rows of as many numbers"), ("0 1", "0 one", "two rows of as many numbers")),
+        *(("0 1", "0 nan", "is not a response"), ("0 0.7 0.6 1", "0 0.2 0.4 1", "is not a response")),
+        ("0 0.5 1", "0 0.8 0.9", "is not a response"),
     ],
 )
-def test_other_texts_are_refused(last, message):
-    with pytest.raises(CurveError, match=message):
-        parse_dorf(all_records(last))
+def test_numbers_that_are_no_response_are_refused(irradiances, brightnesses, message):
+    with pytest.raises(CurveError, match=f"a: {message}"):
+        parse_dorf(all_records(f"a\nlin\nI =\n{irradiances}\nB =\n{brightnesses}\n"))
