@@ -1,7 +1,7 @@
 """Choose the windows of a photograph that are analyzed (CRF-net paper, Sec. 3.2)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -103,8 +103,8 @@ def select_windows(
     chosen: list[Window] = []
     others: list[Window] = []
     for x, y in _positions(height, width, step, seed):
-        window = Window(x, y, step, 0)
-        window = Window(x, y, step, filled_bins(window.cut(pixels)))
+        uncounted = Window(x, y, step, filled=0)
+        window = replace(uncounted, filled=filled_bins(uncounted.cut(pixels)))
         (chosen if window.filled >= coverage else others).append(window)
         if len(chosen) == count:
             return tuple(chosen)

@@ -97,11 +97,8 @@ def measured_bodies(data: Path, *, without: str | None = None) -> list[Body]:
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
     left_out = {model_key(photograph) for photograph in photographs if photograph.fold == without}
-    kept = [
-        photograph
-        for photograph in photographs
-        if model_key(photograph) not in left_out and not photograph.is_developed
-    ]
+    others = [photograph for photograph in photographs if model_key(photograph) not in left_out]
+    kept = [photograph for photograph in others if not photograph.is_developed]
     return [_body(key, kept) for key in sorted({photograph.body_key for photograph in kept})]
 
 

@@ -55,17 +55,10 @@ def introduction(folder: Path, config: ModelConfig) -> str:
 
 def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
     """Return the text of the model card."""
-    figures = (
-        (TEMPLATES / "accuracy.md")
-        .read_text()
-        .format(
-            on_p2=" P2: the same of responses held out of training." if report.table("P2") else "",
-            paper=paper,
-            accuracy=accuracy_table(config.accuracy),
-            bodies=bodies_table(report, config.name),
-        )
-    )
-    return f"{introduction(folder, config)}\n{figures}"
+    figures = (TEMPLATES / "accuracy.md").read_text()
+    on_p2 = " P2: the same of responses held out of training." if report.table("P2") else ""
+    tables = {"accuracy": accuracy_table(config.accuracy), "bodies": bodies_table(report, config.name)}
+    return f"{introduction(folder, config)}\n{figures.format(on_p2=on_p2, paper=paper, **tables)}"
 
 
 def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
