@@ -50,7 +50,9 @@ class InCameraResponses:
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}
         center = _center(list(rows.values()))
-        centers = {kind: _shrunk_center([rows[b.key] for b in bodies if b.kind == kind], center) for kind in IN_CAMERA}
+        centers: dict[str, Float64Array] = {
+            kind: _shrunk_center([rows[body.key] for body in bodies if body.kind == kind], center) for kind in IN_CAMERA
+        }
         deviations = {
             body.key: (stacks[body.key] - centers.get(body.kind, center)) / np.sqrt(len(stacks[body.key]))
             for body in bodies

@@ -10,9 +10,9 @@ from crfnet_core.files import atomic_write_text
 from training.data.real_photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import GAMMA
-from training.evaluation.measure import unusual
-from training.evaluation.measure.real import POOLED, measure_real, pooled_groups, ways_of
-from training.evaluation.measure.simulated import PAPER, WAYS, Job, measure_simulated
+from training.evaluation.measure import real, simulated, unusual
+from training.evaluation.measure.real import POOLED, measure_real, pooled_groups
+from training.evaluation.measure.simulated import PAPER, Job, measure_simulated
 from training.evaluation.measure.table import TABLE_FILE, Table
 from training.evaluation.models import Model
 from training.evaluation.plan import CLEAN, CONDITIONS, SEED, clean_photographs, stress_photographs
@@ -47,11 +47,11 @@ class Evaluation:
     @property
     def keys(self) -> dict[str, str]:
         """Name of a model -> its key in the table."""
-        return {model.name: model.key for model in self.models}
+        return self.asked([""])
 
-    def asked(self, ways_of: Callable[[str], Iterable[str]]) -> dict[str, str]:
-        """Return the name of each way of asking each model -> the model's key in the table."""
-        return {way: model.key for model in self.models for way in ways_of(model.name)}
+    def asked(self, ways: Iterable[str]) -> dict[str, str]:
+        """Return the name of each model, followed by each way of asking it -> the model's key in the table."""
+        return {model.name + way: model.key for model in self.models for way in ways}
 
 
 def evaluate(evaluation: Evaluation) -> Report:
@@ -113,7 +113,7 @@ def _paper(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
     conditions: dict[str, Cases] = {}
     for condition in CONDITIONS:
         if names := [photograph.label for photograph in photographs if photograph.condition == condition]:
-            ways = evaluation.asked(lambda model: [model + way for way in WAYS]) if condition == CLEAN else {}
+            ways = evaluation.asked(simulated.WAYS) if condition == CLEAN else {}
             conditions[condition.name] = Cases(table.rows(PAPER, evaluation.keys | ways | {GAMMA: ""}, names))
     return rows.stress_rows(conditions)
 
@@ -122,7 +122,7 @@ def _real(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
     """Measure real photographs (P4), and yield the figures of each folder and of both."""
     if evaluation.test_set.data is None:
         raise CRFNetError("p4 needs real photographs; give --data instead of --quick")
-    ways, alone, together = evaluation.asked(ways_of), {}, []
+    ways, alone, together = evaluation.asked(real.WAYS), {}, []
     for folder, photographs in real_photographs(evaluation.test_set.data).items():
         protocol = f"P4 {folder}"
         measure_real(protocol, photographs, evaluation.models, table, evaluation.test_set)
@@ -152,7 +152,7 @@ def _unusual(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
     scenes = evaluation.test_set.scenes
     unusual.measure_unusual(scenes, evaluation.models, table)
     names = [unusual.label(scene, kind) for kind in UnusualKind for scene in scenes]
-    return rows.unusual_rows(Cases(table.rows(unusual.PROTOCOL, evaluation.asked(unusual.ways_of), names)))
+    return rows.unusual_rows(Cases(table.rows(unusual.PROTOCOL, evaluation.asked(unusual.WAYS), names)))
 
 
 #: Name of a protocol -> measures it and returns its rows. P0, P2 and P4 include P5, the reliability of uncertainties.

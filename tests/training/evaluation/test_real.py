@@ -16,7 +16,7 @@ from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
-from training.evaluation.measure.real import cached_bank, mean_of_other_bodies, ways_of, without_exif
+from training.evaluation.measure.real import WAYS, cached_bank, mean_of_other_bodies, without_exif
 from training.evaluation.protocols import Evaluation, evaluate
 from training.evaluation.test_sets import bundled_test_set
 from training.export.model_card import accuracy, bodies_table
@@ -24,8 +24,8 @@ from training.export.model_card import accuracy, bodies_table
 #: Exponents of the measured responses.
 POWERS = {"two": 1.8, "three": 1.4, "four": 2.6}
 
-#: The ways in which P4 asks the fixed model.
-WAYS = ways_of("fixed_model")
+#: The ways in which P4 asks the fixed model, by name.
+ASKED = [f"fixed_model{way}" for way in WAYS]
 
 #: Columns of the list of data/real_bodies that hold the origin of a file, and the name of an editor.
 EXIF, EDITOR = ("exif_make", "exif_model", "exif_software", "original_size"), "Adobe Photoshop 23.1 (Macintosh)"
@@ -123,7 +123,7 @@ def test_p4_means_are_over_bodies(measured_once):
     bodies = [row["group"] for row in report.table("P4 both by body") if row["estimator"] == "gamma 2.2"]
     assert bodies == ["Nikon D90", "X2 (resized via Photoshop)", "P1"]  # one of them from two folders
     compared = {row["estimator"] for row in report.table("P4 both") if "shape difference" in row}
-    assert compared == {*WAYS[1:], "mean of the other bodies"}
+    assert compared == {*ASKED[1:], "mean of the other bodies"}
     three, four = (
         estimation_error(ResponseCurve.gamma(POWERS[k]), ResponseCurve.gamma(2.2)) for k in ("three", "four")
     )
@@ -194,9 +194,9 @@ def test_real_photographs_are_measured_once(model, tmp_path, data, monkeypatch):
 def test_p4_asks_with_the_metadata_of_the_file_after_its_loss_and_without_any(measured_once):
     """The plate has no EXIF: this too is evidence, and only where it counts do the answers differ."""
     out, report = measured_once
-    answers = [photographs(out, protocol="P4 real", photograph="one", estimator=way)[0] for way in WAYS]
+    answers = [photographs(out, protocol="P4 real", photograph="one", estimator=way)[0] for way in ASKED]
     assert answers[0]["expected E_est"] != answers[2]["expected E_est"]
-    stated = [row["group"] for row in report.table("P5 shape") if row["estimator"] == WAYS[3]]
+    stated = [row["group"] for row in report.table("P5 shape") if row["estimator"] == ASKED[3]]
     assert stated == ["P4 real", "P4 real_bodies", "P4 both"]
     shapes = [
         row["shape"]
@@ -213,7 +213,7 @@ def test_several_photographs_of_a_body_are_pooled(measured_once):
     assert counts(report, table) == (1, 2)
     assert {row["group"] for row in report.table(table)} == {"2 to 4 photographs"}
     single, pooled = (
-        report.row(table, name, "2 to 4 photographs")["shape mean"][0] for name in (WAYS[0], f"{WAYS[0]}, pooled")
+        report.row(table, name, "2 to 4 photographs")["shape mean"][0] for name in (ASKED[0], f"{ASKED[0]}, pooled")
     )
     assert pooled == pytest.approx(single, abs=0.02)  # the same photograph twice
 

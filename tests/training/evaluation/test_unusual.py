@@ -3,7 +3,7 @@ from types import SimpleNamespace
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.table import Table
-from training.evaluation.measure.unusual import WRITTEN, label, measure_unusual, ways_of
+from training.evaluation.measure.unusual import WAYS, WRITTEN, label, measure_unusual
 from training.evaluation.report.cases import Cases
 from training.evaluation.report.rows import unusual_rows
 from training.synthesis.unusual import UnusualKind
@@ -27,8 +27,9 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
     measure_unusual(files, [model], Table(tmp_path / "table", {}))
     assert len(asked) == len(expected) * 2
     names = [label(file, kind) for file in files for kind in UnusualKind]
-    cases = Cases(table.rows("P6", dict.fromkeys(ways_of("fixed_model"), model.key), names))
+    asked_as = [f"fixed_model{way}" for way in WAYS]
+    cases = Cases(table.rows("P6", dict.fromkeys(asked_as, model.key), names))
     counts = {(row["group"], row["estimator"]): row["accepted"] for row in unusual_rows(cases)}
-    assert {counts["", way] for way in ways_of("fixed_model")} == {2}
+    assert {counts["", way] for way in asked_as} == {2}
     assert counts[UnusualKind.SOLARIZED.value, "fixed_model"] == 2
     assert counts[UnusualKind.MESSENGER.value, "fixed_model"] == 0

@@ -45,14 +45,9 @@ cached_bank = cache(make_bank)
 #: What follows the name of a protocol whose photographs are estimated together.
 POOLED = ", pooled"
 
-
-def ways_of(model: str) -> list[str]:
-    """Return the names of the ways in which P4 asks a model.
-
-    They are: with the file's metadata; after its loss; after its loss, with the kind of camera stated; without any
-    metadata.
-    """
-    return [model, f"{model}, EXIF lost", f"{model}, EXIF lost, kind stated", f"{model}, metadata ignored"]
+#: What follows a model's name: asked with the file's metadata; after its loss; after its loss, with the kind of camera
+#: stated; without any metadata.
+WAYS = ("", ", EXIF lost", ", EXIF lost, kind stated", ", metadata ignored")
 
 
 def measure_real(
@@ -91,8 +86,8 @@ def _measure_models(
     """
 
     def lacks(model: Model, group: Sequence[RealPhotograph]) -> bool:
-        rows = product(group, ways_of(model.name))
-        return any(table.lacks(protocol, photograph.name, way, model.key) for photograph, way in rows)
+        rows = product(group, WAYS)
+        return any(table.lacks(protocol, photograph.name, model.name + way, model.key) for photograph, way in rows)
 
     for group in tqdm(groups, desc=protocol, unit="group"):
         if not (lacking := [model for model in models if lacks(model, group)]):
@@ -102,9 +97,11 @@ def _measure_models(
             answers = estimates(photos, group[0].kind, load_network(model), bank)
             for photograph, photo in zip(group, photos, strict=True):
                 true, counts = photograph.truth(), code_counts(photo)
-                figures = [estimate_figures(true, answer, counts) for answer in answers]
-                named = dict(zip(ways_of(model.name), figures, strict=True))
-                table.add(_rows(protocol, photograph, true, model.key, named))
+                figures = {
+                    model.name + way: estimate_figures(true, answer, counts)
+                    for way, answer in zip(WAYS, answers, strict=True)
+                }
+                table.add(_rows(protocol, photograph, true, model.key, figures))
 
 
 def pooled_groups(photographs: Sequence[RealPhotograph]) -> list[list[RealPhotograph]]:
@@ -149,7 +146,7 @@ def read_real_photo(photograph: RealPhotograph) -> Photo:
 def estimates(
     photos: Sequence[Photo], kind: str, network: ResponseNetwork, bank: ResponseBank
 ) -> list[ResponseEstimate]:
-    """Return the estimates from photographs of one body of a `RealPhotograph.kind`, in the order of `ways_of`."""
+    """Return the estimates from photographs of one body of a `RealPhotograph.kind`, in the order of `WAYS`."""
     device, lost = (Device(kind) if kind in set(Device) else None), [without_exif(photo) for photo in photos]
     estimate = partial(estimate_response, network=network, bank=bank)
     return [

@@ -40,14 +40,9 @@ WRITTEN = {
     ),
 }
 
-
-def ways_of(model: str) -> list[str]:
-    """Return the names of the ways in which P6 asks a model.
-
-    They are: with the metadata that the picture's program writes; without any; without any, by a user who states,
-    rightly or wrongly, that a camera took the picture.
-    """
-    return [model, f"{model}, without metadata", f"{model}, without metadata, a camera stated"]
+#: What follows a model's name: asked with the metadata that the picture's program writes; without any; without any, by
+#: a user who states, rightly or wrongly, that a camera took the picture.
+WAYS = ("", ", without metadata", ", without metadata, a camera stated")
 
 
 def label(scene: SceneFile, kind: UnusualKind) -> str:
@@ -56,7 +51,7 @@ def label(scene: SceneFile, kind: UnusualKind) -> str:
 
 
 def measure_unusual(scenes: Sequence[SceneFile], models: Sequence[Model], table: Table) -> None:
-    """Add to the table what it lacks of every kind of every scene, with the prior "camera", asked in all `ways_of`.
+    """Add to the table what it lacks of every kind of every scene, with the prior "camera", asked in all `WAYS`.
 
     A picture has a random generator of its own, so a kind that is added last changes no other picture.
     """
@@ -73,18 +68,18 @@ def measure_unusual(scenes: Sequence[SceneFile], models: Sequence[Model], table:
 
 def _lacks(table: Table, scene: SceneFile, kind: UnusualKind, model: Model) -> bool:
     """Return whether a model has to be asked about a picture."""
-    return any(table.lacks(PROTOCOL, label(scene, kind), way, model.key) for way in ways_of(model.name))
+    return any(table.lacks(PROTOCOL, label(scene, kind), model.name + way, model.key) for way in WAYS)
 
 
 def _rows(photo: Photo, scene: SceneFile, kind: UnusualKind, model: Model) -> Iterator[Row]:
-    """Yield the rows of a picture: the verdicts of a model, asked in all `ways_of`."""
+    """Yield the rows of a picture: the verdicts of a model, asked in all `WAYS`."""
     columns = {"photograph": label(scene, kind), "model": model.key, "scene": scene.name, "kind": kind.value}
-    for way, verdict in zip(ways_of(model.name), _verdicts(photo, kind, load_network(model)), strict=True):
-        yield {"protocol": PROTOCOL, "estimator": way, "verdict": verdict} | columns
+    for way, verdict in zip(WAYS, _verdicts(photo, kind, load_network(model)), strict=True):
+        yield {"protocol": PROTOCOL, "estimator": model.name + way, "verdict": verdict} | columns
 
 
 def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list[str]:
-    """Return the verdicts on a picture, in the order of `ways_of`."""
+    """Return the verdicts on a picture, in the order of `WAYS`."""
 
     def verdict(metadata: FileMetadata, device: Device | None = None) -> str:
         options = AnalysisOptions(device=device)
