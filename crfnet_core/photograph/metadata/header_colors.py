@@ -76,15 +76,17 @@ def _interop_tags(header: Any) -> ColorTags:
 def _chromaticity_tags(header: Any, source: str) -> ColorTags:
     """Return the tags of chromaticities in OpenEXR and PNG; none if the primaries lie on a line."""
     numbers = np.ravel(_sequence(header, "chromaticities"))
-    if numbers.size != 8 or not np.isfinite(numbers).all() or (corners := numbers.reshape(4, 2))[3].min() <= 0:
+    if numbers.size != 8 or not np.isfinite(numbers).all():
         return ColorTags()
+    corners = numbers.reshape(4, 2)  # of red, green, blue and white
     for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values()):
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
             return ColorTags(named, source=source)
+    area = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)])))
+    if area <= LEAST_AREA or corners[3].min() <= 0:
+        return ColorTags()
     red, green, blue, white = ((float(x), float(y)) for x, y in corners)
-    unnamed = Primaries("primaries of its own", red, green, blue, white)
-    is_sound = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)]))) > LEAST_AREA
-    return ColorTags(unnamed, source=source) if is_sound else ColorTags()
+    return ColorTags(Primaries("primaries of its own", red, green, blue, white), source=source)
 
 
 def _sequence(header: Any, name: str) -> Sequence[Any]:

@@ -48,7 +48,7 @@ SAME_LIGHTNESS = 1.5
 
 #: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped; and the least
 #: number of codes there.
-_COMPARED, LEAST_COMPARED = (8, 98.5), 8
+_COMPARED, LEAST_COMPARED = (8, 98.5), 9
 
 #: Encoding -> the curve of its light, in stops; the powers of it that occur, as a display may add one; and the largest
 #: difference in stops. Log curves are like PQ, but for their exponent. sRGB and powers differ from all by 0.33.
@@ -82,14 +82,15 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     if space != "RGB":
         return ColorTags(transfer=transfer, source=SOURCE) if transfer else ColorTags()
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in profile
-    codes = cicp_tags(element[1] if (element := _CICP.search(profile)) else b"")
+    element = _CICP.search(profile)
+    codes = cicp_tags(element[1]) if element else ColorTags()
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
     return ColorTags(primaries, codes.transfer or transfer, SOURCE if primaries else TABLES)
 
 
 def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
     """Return the encoding that the lightness of a gray ramp shows, whatever the tags are; or none."""
-    ramp = Image.fromarray(np.repeat(_RAMP[None, :, None], len(mode), axis=2).squeeze(axis=2 if mode == "L" else ()))
+    ramp = Image.fromarray(_RAMP[None, :]).convert(mode)
     intent = ImageCms.Intent.RELATIVE_COLORIMETRIC
     try:
         to_lab = ImageCms.buildTransform(profile, ImageCms.createProfile("LAB"), mode, "LAB", intent)
@@ -102,9 +103,11 @@ def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
         return "linear"
     is_compared = (lightness > _COMPARED[0]) & (lightness < _COMPARED[1])
     stops, codes = 3 * np.log2((lightness[is_compared] + 16) / 116), _RAMP[is_compared] / 255
+    if len(codes) < LEAST_COMPARED:
+        return ""
     for name, (curve, powers, most) in _ENCODINGS.items():
-        fit = np.polynomial.Polynomial.fit(curve(codes), stops, 1) if len(codes) > LEAST_COMPARED else None
-        if fit and powers[0] < fit.deriv()(0) < powers[1] and np.abs(fit(curve(codes)) - stops).max() < most:
+        fit = np.polynomial.Polynomial.fit(curve(codes), stops, 1)
+        if powers[0] < fit.deriv()(0) < powers[1] and np.abs(fit(curve(codes)) - stops).max() < most:
             return name
     return ""
 
