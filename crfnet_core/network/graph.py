@@ -54,7 +54,8 @@ def _parts(message: memoryview) -> Iterator[tuple[int, memoryview]]:
         size, place = _number(message, place) if key & 7 == _LENGTH else (_SIZES.get(key & 7, -1), place)
         if size < 0 or place + size > len(message) or key >= 2**32:  # of which others see the low bits
             raise ValueError("it is cut short or is not ONNX")
-        if (count := count + 1) > MOST_PARTS:
+        count += 1
+        if count > MOST_PARTS:
             raise ValueError(f"it has more than {MOST_PARTS} parts")
         yield key >> 3, message[place : place + size]
         place += size

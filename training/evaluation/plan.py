@@ -125,7 +125,8 @@ def stress_photographs(
     """
     photographs = []
     for condition in CONDITIONS:
-        if sources := originals if condition.averaged else scenes:
+        sources = originals if condition.averaged else scenes
+        if sources:
             cells = balanced(sources, curves, count=count)
             photographs += [TestPhotograph(scene, curve, condition) for scene, curve, _ in cells]
     return photographs

@@ -53,14 +53,14 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
     """Return up to four published curves, of `makes` if known, that explain black and the middle best: Eq. L.4."""
     makers = " ".join(makes).casefold()
     tried = {name: curve for name, curve in LOG_CURVES.items() if name.split()[0].casefold() in makers} or LOG_CURVES
-    scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])
+    names, curves = list(tried), list(tried.values())
+    scores = np.array([_log_likelihood(curve, levels) for curve in curves])
     weights = np.exp(scores - scores.max())
     probabilities = weights / weights.sum()
     near = []
-    for position in np.argsort(-scores)[:MOST_NAMED]:
-        name = [*tried][position]
-        errors = [light_error(tried[name], true, levels) for true in tried.values()]
-        near.append(NearCurve(name, float(probabilities[position]), float(probabilities @ errors)))
+    for number in np.argsort(-scores)[:MOST_NAMED]:
+        errors = [light_error(curves[number], true, levels) for true in curves]
+        near.append(NearCurve(names[number], float(probabilities[number]), float(probabilities @ errors)))
     return tuple(near)
 
 
