@@ -11,7 +11,7 @@ import scipy.io
 
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
-from crfnet_core.posterior import IN_CAMERA, Posterior, Prior
+from crfnet_core.posterior import Posterior, Prior
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real_photographs import real_photographs
@@ -216,17 +216,6 @@ def test_several_photographs_of_a_body_are_pooled(measured_once):
         report.row(table, name, "2 to 4 photographs")["shape mean"][0] for name in (ASKED[0], f"{ASKED[0]}, pooled")
     )
     assert pooled == pytest.approx(single, abs=0.02)  # the same photograph twice
-
-
-def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):
-    """A response that no camera has is in the bank of the others, and not in the bank of its own fold."""
-    write_response(data / "real/gt/two.csv", 9.0)
-    one, two, _ = real_photographs(data)["real"]
-    brightest = [
-        max(bank.brightness[bank.members(family), 10].max() for family in IN_CAMERA)
-        for bank in (cached_bank(data, without=case.fold) for case in (one, two))
-    ]
-    assert brightest[0] > brightest[1] + 0.1
 
 
 def test_a_file_that_lost_its_exif_keeps_the_size_of_its_picture_only(root):
