@@ -32,8 +32,6 @@ def is_noise(cells: Float64Array) -> bool:
 
 def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
     """Return the similarities of the scenes of photographs, shape (n, n): correlations of thumbnails, at least 0."""
-    if len(thumbnails) == 1:
-        return np.ones((1, 1))
     rows = np.stack([cells.ravel() for cells in thumbnails])
     rows = rows - rows.mean(axis=1, keepdims=True)
     lengths = np.maximum(np.linalg.norm(rows, axis=1), 1e-9)

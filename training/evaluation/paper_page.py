@@ -14,7 +14,6 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crfnet_core.estimate.estimate import estimate_response
@@ -187,10 +186,8 @@ def _answer(photograph: TestPhotograph, test_set: TestSet, model: Model) -> Resp
 
 def _figure() -> Figure:
     """Return an empty figure."""
-    mpl.rcParams.update({"font.size": 8, "svg.hashsalt": "crfnet"})
-    figure = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
+    mpl.rcParams["font.size"] = 8
+    return Figure(figsize=SIZE, dpi=DPI, layout="constrained")
 
 
 def _save(figure: Figure, path: Path) -> None:
