@@ -3,8 +3,6 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import Predictions, ResponseNetwork
@@ -65,9 +63,7 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
 
 def cut_photographs(photos: Photographs, options: AnalysisOptions | None = None) -> tuple[CutPhotograph, ...]:
     """Return the windows of one or several photographs; raise PhotoError for anything else, such as a file's name."""
-    several: Iterable[object] = (photos,)
-    if isinstance(photos, Iterable) and not isinstance(photos, str | np.ndarray):
-        several = photos
+    several: Iterable[object] = photos if isinstance(photos, Iterable) else (photos,)
     photographs = tuple(_cut(photo, options) for photo in several)
     if not photographs:
         raise PhotoError("no_photographs")
