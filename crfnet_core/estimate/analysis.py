@@ -43,9 +43,8 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
     `options.device` is not a `Device`.
     """
     options = options or AnalysisOptions()
-    metadata = photo.metadata if options.use_metadata else None
-    if options.use_metadata:
-        refuse_tagged(photo)
+    photo = photo if options.use_metadata else photo.with_metadata(None)
+    refuse_tagged(photo)
     windows = _selected_windows(photo, options)
     samples = cut_windows(photo, windows)
     return CutPhotograph(
@@ -54,8 +53,8 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
         samples=samples,
         thumbnail=thumbnail(photo),
         levels=Levels.from_pixels(photo),
-        make="" if metadata is None else metadata.make,
-        origin=_origin(metadata, options.device),
+        make=photo.metadata.make if photo.metadata else "",
+        origin=_origin(photo.metadata, options.device),
         is_gray=photo.is_gray,
         clipped=float(((samples <= DARKEST) | (samples >= BRIGHTEST)).mean()),
     )
