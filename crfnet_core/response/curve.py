@@ -206,11 +206,10 @@ class _PiecewiseLinear:
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
         values = np.asarray(arguments)
-        most = 1 if values.dtype.kind in "iu" else self._most
-        if most < np.inf:
-            largest = float(np.fmax.reduce(values, axis=None, initial=0))
-            if largest > most:
-                raise CurveError("brightness_codes", found=largest)
+        if self._most < np.inf and (largest := float(np.fmax.reduce(values, axis=None, initial=0))) > self._most:
+            raise CurveError("brightness_codes", found=largest)
+        if values.dtype.kind in "iu" and values.size and values.max() > 1:
+            raise CurveError("brightness_codes", found=int(values.max()))
         kind = np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64
         if values.size <= BLOCK:
             return kind(np.interp(values.astype(np.float64), self._knots, self._values))
