@@ -1,9 +1,8 @@
 """Measure a camera's response from an exposure stack: the whole of it on one screen; and the door to raw pairs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_ex
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.uncertainty import uncertainty_of
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
@@ -87,7 +87,8 @@ def calibrate_stack(
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
     check_seen(white * every.brightness[every.is_used])
-    labels, measurement, other = _measured(every, _readings(exposures, frames[0]))
+    readings = _readings(exposures, frames[0])
+    labels, measurement, other = _measured(every, readings)
     names = [frame.path.name for frame in frames]
     check_measurement(measurement, names, white=white)
     curve = in_file_codes(measurement.curve, white)
@@ -95,13 +96,13 @@ def calibrate_stack(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
         uncertainty=uncertainty_of(measurement, other, white=white),
-        residual=white * measurement.residual,
+        residual=white * rms_codes(measurement.fit.residual),
         white=white,
         reaches_white=measurement.anchor.is_seen,
-        labels=labels.name,
+        labels=labels,
         nearest_known=nearest_known(measurement.curve),
         metadata=frames[0].metadata,
-        frames=_frame_reports(frames, measurement, labels.stops, shifts, white=white),
+        frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
         warnings=notices_of(measurement, names, exposures, white=white),
@@ -129,36 +130,30 @@ def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[
     return tuple(replace(frame, label=replace(frame.label, seconds=time)) for frame, time in pairs)
 
 
-class _Reading(NamedTuple):
-    """A way to read the exposure labels."""
-
-    name: str
-    stops: Float64Array
-    bonus: float
-
-
-def _readings(exposures: Exposures, first: Frame) -> list[_Reading]:
+def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:
     """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
-    nominal = _Reading("nominal", exposures.nominal, 0)
+    nominal = {"nominal": exposures.nominal}
     is_phone = device_of(first.metadata.make, first.metadata.model) is Device.PHONE
     if exposures.snapped is None or is_phone:
-        return [nominal]
-    snapped = _Reading("exact powers of two", exposures.snapped, SNAPPED_BONUS)
+        return nominal
+    snapped = {"exact powers of two": exposures.snapped}
     is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS
-    return [snapped] if is_same else [snapped, nominal]
+    return snapped if is_same else snapped | nominal
 
 
-def _measured(every: Observations, readings: Sequence[_Reading]) -> tuple[_Reading, Measurement, ResponseCurve | None]:
-    """Return the reading of the labels that costs less, its measurement, and the other reading's response."""
-    first, *others = readings
-    measurement = measure(every, first.stops)
-    if not others:
-        return first, measurement, None
-    other = others[0]
-    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], measurement.fit.weights)
-    if measurement.fit.cost - first.bonus <= again.fit.cost - other.bonus:
-        return first, measurement, again.curve
-    return other, replace(again, frames=measurement.frames, outliers=measurement.outliers), measurement.curve
+def _measured(
+    every: Observations, readings: Mapping[str, Float64Array]
+) -> tuple[str, Measurement, ResponseCurve | None]:
+    """Return the first reading of the labels or a much better other, its measurement, and the other's response."""
+    (labels, stops), *others = readings.items()
+    measurement = measure(every, stops)
+    for other, stops in others:
+        again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
+        if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
+            again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
+            return other, again, measurement.curve
+        return labels, measurement, again.curve
+    return labels, measurement, None
 
 
 def _frame_reports(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.types import Float64Array, IndexArray
+from crfnet_core.types import Float32Array, Float64Array, IndexArray
 
 #: log2 of the least and of the largest irradiance, white = 1, and steps to a stop of the table between them.
 LOWEST, HIGHEST, STEPS = -14.0, 1.0, 32
@@ -108,11 +108,15 @@ class CurveModel:
         return ResponseCurve.from_samples(np.append(np.minimum(samples[:-1], 1), 1.0))
 
 
-def in_camera_mean() -> ResponseCurve:
-    """Return the mean response of cameras' own renderings: the start of a fit, and the center of its prior."""
+def in_camera_responses() -> Float32Array:
+    """Return the packaged responses of cameras' own renderings, (N, 1024)."""
     bank = ResponseBank.load()
-    members = np.any([bank.members(family) for family in IN_CAMERA], axis=0)
-    return ResponseCurve.from_samples(bank.brightness[members].mean(axis=0, dtype=np.float64))
+    return bank.brightness[np.any([bank.members(family) for family in IN_CAMERA], axis=0)]
+
+
+def in_camera_mean() -> ResponseCurve:
+    """Return the mean of these responses: the start of a fit, and the center of its prior."""
+    return ResponseCurve.from_samples(in_camera_responses().mean(axis=0, dtype=np.float64))
 
 
 def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:

@@ -10,6 +10,7 @@ import numpy as np
 from crfnet_core.calibration.blocks import PARTLY_WHITE, Observations, pick_blocks
 from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.frames import LEAST_FRAMES
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.solver import StackFit, fit_stack, rough_irradiance
 from crfnet_core.errors import CalibrationError, beside_limits
 from crfnet_core.response.curve import ResponseCurve
@@ -69,11 +70,6 @@ class Measurement:
     anchor: Anchor  # where white is in that unit
     curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
     outliers: float  # fraction of the samples that were left out
-
-    @property
-    def residual(self) -> float:
-        """Root mean square of brightness less the model's, white = 255."""
-        return float(255 * np.sqrt(np.nanmean(self.fit.residual**2)))
 
 
 def measure(every: Observations, exposures: Float64Array) -> Measurement:
@@ -158,9 +154,7 @@ def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, flo
 
 def frame_residuals(fit: StackFit) -> Float64Array:
     """Return the root mean square residual of each frame, white = 255, shape (T,); 0 where it shows nothing."""
-    squares = np.where(np.isfinite(fit.residual), fit.residual, 0) ** 2
-    count = np.isfinite(fit.residual).sum(axis=0)
-    return np.asarray(255 * np.sqrt(squares.sum(axis=0) / np.maximum(count, 1)), dtype=np.float64)
+    return np.nan_to_num([rms_codes(frame) for frame in fit.residual.T])
 
 
 def _worst_frame(fit: StackFit) -> int | None:
@@ -180,6 +174,6 @@ def _check_rest(stops: Float64Array, count: int) -> None:
 
 def _outliers(seen: Observations, fit: StackFit) -> BoolArray:
     """Return which samples do not fit in some frame, shape (M,)."""
-    scaled = np.abs(np.where(np.isfinite(fit.residual), fit.residual, 0)) / seen.deviation
+    scaled = np.abs(np.nan_to_num(fit.residual)) / seen.deviation
     worst = scaled.max(axis=1)
     return np.asarray(worst > OUTLIER * max(1.0, float(np.median(worst))), dtype=bool)

@@ -41,8 +41,7 @@ class PairFit(FittedResponse):
     corner: float  # stops by which the corner is brightened
     tilts: Float64Array  # (S, 2): stops a place (see `Cells.place`) by which each shot brightens, right and down
     offsets: Float64Array  # (S,): stops by which each shot is brighter than the first; its own is 0
-    log_light: Float64Array  # (N, 3): log2 of the light of every cell
-    residual: Float64Array  # (N, 3): brightness less the model's; NaN where nothing counts
+    log_light: Float64Array  # (N, 3), as `residual`: log2 of the light of every cell
     headroom: float  # stops by which raw saturation of a white surface lies above white
     outliers: float  # fraction of what could count that fits in no way
 

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration.blocks import members_of_bins
 from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
 from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
 from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.uncertainty import CHANNEL_PART
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
@@ -78,7 +80,8 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
-    cells, fit, basis = _measured(pairs)
+    saturation = float(np.median([pair.raw.balance.min() for pair in pairs]))  # balanced light of a white surface
+    cells, fit, basis = _measured(pairs, saturation)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
     low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
@@ -87,8 +90,8 @@ def measure_pairs(
     return PairCalibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=_uncertainty(cells, fit, curve, basis, _saturation(pairs)),
-        residual=_residual(fit.residual),
+        uncertainty=_uncertainty(cells, fit, curve, basis, saturation),
+        residual=rms_codes(fit.residual),
         metadata=pairs[0].metadata,
         points=_points(cells, fit, counted),
         counts=np.bincount(pairs[0].codes.ravel(), minlength=256).astype(np.float64),
@@ -102,9 +105,9 @@ def measure_pairs(
     )
 
 
-def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
+def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit, WhiteBasis]:
     """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
-    curve, fit, saturation = in_camera_mean(), None, _saturation(pairs)
+    curve, fit = in_camera_mean(), None
     for _ in range(ROUNDS):
         inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
         cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
@@ -164,8 +167,7 @@ def _between_channels(cells: Cells, fit: PairFit) -> float:
     counts = np.isfinite(fit.residual) & (cells.codes > FIRST_SHAPE_CODE) & (cells.codes < LAST_SHAPE_CODE)
     off = (fit.residual / np.maximum(slope, LEAST_RISE))[counts]
     groups = (np.floor(cells.codes / CODE_BIN) * 3 + np.arange(3))[counts]
-    parts = [off[groups == group] for group in np.unique(groups)]
-    medians = [np.median(part) for part in parts if len(part) >= LEAST_IN_BIN]
+    medians = [np.median(off[part]) for part in members_of_bins(groups, off) if len(part) >= LEAST_IN_BIN]
     return float(np.sqrt(np.mean(np.square(medians)))) if medians else 0.0
 
 
@@ -182,7 +184,7 @@ def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
     if np.ptp(offsets) > MOST_APART:
         first, last = shots[int(np.argmin(offsets))].path.name, shots[int(np.argmax(offsets))].path.name
         raise CalibrationError("shots_differ", first=first, last=last, stops=float(np.ptp(offsets)), most=MOST_APART)
-    residual = _residual(fit.residual)
+    residual = rms_codes(fit.residual)
     if residual > MOST_RESIDUAL or fit.outliers > MOST_OUTLIERS:
         raise CalibrationError("pair_unexplained", path=path, residual=residual, outliers=fit.outliers)
 
@@ -201,14 +203,18 @@ def _notices(pairs: Sequence[Pair], fit: PairFit, basis: WhiteBasis, low: float)
 
 def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[ShotReport, ...]:
     """Return a report of each pair."""
-    reports = []
-    for number, pair in enumerate(pairs):
-        own = cells.shot == number
-        residual, offset = _residual(fit.residual[own]), float(fit.offsets[number])
-        reports.append(
-            ShotReport(pair.path, pair.jpeg, pair.raw.iso, int(own.sum()), offset, residual, pair.place.correlation)
+    return tuple(
+        ShotReport(
+            path=pair.path,
+            jpeg=pair.jpeg,
+            iso=pair.raw.iso,
+            cells=int((cells.shot == number).sum()),
+            offset=float(fit.offsets[number]),
+            residual=rms_codes(fit.residual[cells.shot == number]),
+            correlation=pair.place.correlation,
         )
-    return tuple(reports)
+        for number, pair in enumerate(pairs)
+    )
 
 
 def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
@@ -219,14 +225,3 @@ def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
     columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
     columns.append(np.broadcast_to(np.arange(3), counted.shape))
     return np.stack([column[counted] for column in columns], axis=1)
-
-
-def _saturation(pairs: Sequence[Pair]) -> float:
-    """Return the balanced raw light at which a white surface saturates the first channel, of most shots."""
-    return float(np.median([pair.raw.balance.min() for pair in pairs]))
-
-
-def _residual(residual: Float64Array) -> float:
-    """Return the root mean square of residuals in 8-bit codes, NaN if there are none."""
-    known = residual[np.isfinite(residual)]
-    return float(255 * np.sqrt(np.mean(known**2))) if len(known) else float("nan")
