@@ -43,7 +43,7 @@ KINDS = {
 }
 
 #: Local tone mapping of simulated pairs, and ways to make two files that are not a pair.
-LOCAL = {f"pairs, local tone mapping {part}": part for part in (0.0, 0.05, 0.15)}
+LOCAL = {f"pairs, local tone mapping {part:.2f}": part for part in (0.0, 0.05, 0.15)}
 WRONG = ("another scene", "moved", "cropped", "edited")
 
 #: Other edits by programs that leave no name: the response stays, or is no longer the camera's.

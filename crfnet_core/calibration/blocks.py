@@ -82,7 +82,7 @@ class Observations:
 
 def block_means(codes: CodeArray, white: float) -> BlockMeans:
     """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
-    cell = cell_size(codes.shape)
+    cell = max(1, round(max(codes.shape) / (CELLS * BLOCKS_ACROSS)))  # so small pictures have fewer blocks
     cells = squares(_means(codes, cell) / white, CELLS)
     is_white = codes >= white * (1 - WHITE_MARGIN / 255)
     return BlockMeans(
@@ -90,11 +90,6 @@ def block_means(codes: CodeArray, white: float) -> BlockMeans:
         spread=cells.std(axis=WITHIN).reshape(-1, 3),
         white=_means(is_white, CELLS * cell).reshape(-1, 3),
     )
-
-
-def cell_size(shape: tuple[int, ...]) -> int:
-    """Return the side of a cell in pixels: at least one, so small pictures have fewer blocks."""
-    return max(1, round(max(shape) / (CELLS * BLOCKS_ACROSS)))
 
 
 def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:

@@ -6,16 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration import checks
 from crfnet_core.calibration.alignment import Shift
 from crfnet_core.calibration.blocks import Observations, block_means, observe
-from crfnet_core.calibration.checks import (
-    check_labels,
-    check_measurement,
-    check_range,
-    check_seen,
-    nearest_known,
-    notices_of,
-)
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
@@ -78,19 +71,20 @@ def calibrate_stack(
     Raise PhotoError if a frame cannot be read, and CalibrationError if the frames are not a stack, or no camera
     response explains them.
     """
-    frames = _labeled(read_frames(paths, progress=progress), seconds)
-    check_labels(frames, accept_edited=accept_edited)
+    frames = read_frames(paths, progress=progress)
+    frames = frames if seconds is None else _labeled(frames, seconds)
+    checks.check_labels(frames, accept_edited=accept_edited)
     exposures = stack_exposures([frame.label for frame in frames])
-    check_range(exposures)
+    checks.check_range(exposures)
     white = white_level(frames)
     codes, shifts = align(frames, exposures.nominal.argsort().tolist())
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
-    check_seen(white * every.brightness[every.is_used])
+    checks.check_seen(white * every.brightness[every.is_used])
     readings = _readings(exposures, frames[0])
     labels, measurement, other = _measured(every, readings)
     names = [frame.path.name for frame in frames]
-    check_measurement(measurement, names, white=white)
+    checks.check_measurement(measurement, names, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
@@ -100,12 +94,12 @@ def calibrate_stack(
         white=white,
         reaches_white=measurement.anchor.is_seen,
         labels=labels,
-        nearest_known=nearest_known(measurement.curve),
+        nearest_known=checks.nearest_known(measurement.curve),
         metadata=frames[0].metadata,
         frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=notices_of(measurement, names, exposures, white=white),
+        warnings=checks.notices_of(measurement, names, exposures, white=white),
     )
 
 
@@ -120,14 +114,12 @@ def calibrate_pairs(
     return measure_pairs(paths, accept_edited=accept_edited, progress=progress)
 
 
-def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
-    """Return the frames with the stated times, if there are any."""
-    if seconds is None:
-        return tuple(frames)
+def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
+    """Return the frames with stated times."""
     if len(seconds) != len(frames):
         raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
-    pairs = zip(frames, seconds, strict=True)
-    return tuple(replace(frame, label=replace(frame.label, seconds=time)) for frame, time in pairs)
+    labels = [replace(frame.label, seconds=time) for frame, time in zip(frames, seconds, strict=True)]
+    return [replace(frame, label=label) for frame, label in zip(frames, labels, strict=True)]
 
 
 def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:

@@ -55,8 +55,8 @@ def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
 
 def check_range(exposures: Exposures) -> None:
     """Refuse exposures that span less than `LEAST_RANGE` stops, or neighbors more than `LARGEST_STEP` stops apart."""
-    if exposures.range < LEAST_RANGE - ROUNDING:
-        raise CalibrationError("exposures_span", span=beside_limits(exposures.range, LEAST_RANGE), least=LEAST_RANGE)
+    if (span := float(np.ptp(exposures.nominal))) < LEAST_RANGE - ROUNDING:
+        raise CalibrationError("exposures_span", span=beside_limits(span, LEAST_RANGE), least=LEAST_RANGE)
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP + ROUNDING:
         raise CalibrationError("exposures_gap", step=beside_limits(step, LARGEST_STEP))
 

@@ -43,7 +43,7 @@ class Frame:
     is_gray: bool  # whether the three channels are equal everywhere
 
 
-def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> tuple[Frame, ...]:
+def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> list[Frame]:
     """Read the frames of one static scene, checked to be of one size, bit depth and camera.
 
     Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, or they
@@ -56,12 +56,12 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
     path, times = Counter(path.resolve() for path in paths).most_common(1)[0]
     if times > 1:
         raise CalibrationError("frame_twice", path=path)
-    frames = []
+    frames: list[Frame] = []
     for number, path in enumerate(paths):
         frames.append(_frame(path, read_codes(path)))
         _check_like_first(frames[0], frames[-1])
         show_progress(progress, number + 1, len(paths))
-    return tuple(frames)
+    return frames
 
 
 def white_level(frames: Sequence[Frame]) -> float:

@@ -89,8 +89,11 @@ def measure(every: Observations, exposures: Float64Array) -> Measurement:
         if worst is None or frames.sum() < LEAST_FRAMES:
             break
         frames[np.flatnonzero(frames)[worst]] = False
-        _check_rest(exposures[frames], len(frames))
-    is_outlier = _outliers(seen, measurement.fit)
+        if (span := float(np.ptp(exposures[frames]))) < LEAST_REST:
+            facts = {"unfit": int((~frames).sum()), "count": len(frames), "least": LEAST_REST}
+            raise CalibrationError("rest_span", span=beside_limits(span, LEAST_REST), **facts)
+    off = (np.abs(np.nan_to_num(measurement.fit.residual)) / seen.deviation).max(axis=1)
+    is_outlier = off > OUTLIER * max(1.0, float(np.median(off)))
     if is_outlier.any() and not is_outlier.all():
         measurement = fit_and_anchor(seen.subset(~is_outlier), stops, measurement.fit.weights)
     return replace(measurement, frames=frames, outliers=float(is_outlier.mean()))
@@ -163,17 +166,3 @@ def _worst_frame(fit: StackFit) -> int | None:
     worst = int(residuals.argmax())
     others = float(np.median(np.delete(residuals, worst)))
     return worst if residuals[worst] > max(WORST_FRAME, WORSE_THAN_OTHERS * others) else None
-
-
-def _check_rest(stops: Float64Array, count: int) -> None:
-    """Refuse the frames that fit each other, of `count` frames, if their exposures span too few stops."""
-    if (span := float(np.ptp(stops))) < LEAST_REST:
-        span_text = beside_limits(span, LEAST_REST)
-        raise CalibrationError("rest_span", unfit=count - len(stops), count=count, span=span_text, least=LEAST_REST)
-
-
-def _outliers(seen: Observations, fit: StackFit) -> BoolArray:
-    """Return which samples do not fit in some frame, shape (M,)."""
-    scaled = np.abs(np.nan_to_num(fit.residual)) / seen.deviation
-    worst = scaled.max(axis=1)
-    return np.asarray(worst > OUTLIER * max(1.0, float(np.median(worst))), dtype=bool)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter, minimum_filter
@@ -51,7 +51,7 @@ class Cells:
     surroundings: Float64Array  # (N,): log2 of the raw light around the cell, less its median over the picture
     place: Float64Array  # (N, 2): right and down from the center; a corner is 1 away
     tile: IndexArray  # (N,): 0 or 1, a checkerboard over the picture
-    shot: IndexArray  # (N,)
+    shot: Float64Array  # (N, S): 1 at the cell's own of S pairs, else 0
 
     def subset(self, cells: BoolArray | IndexArray) -> Cells:
         """Return some of the cells."""
@@ -59,10 +59,10 @@ class Cells:
 
     @classmethod
     def joined(cls, parts: list[Cells]) -> Cells:
-        """Return the cells of several pairs, numbered in order."""
-        each = {name.name: [getattr(part, name.name) for part in parts] for name in fields(cls)}
-        each["shot"] = [np.full_like(shot, number) for number, shot in enumerate(each["shot"])]
-        return cls(**{name: np.concatenate(values) for name, values in each.items()})
+        """Return the cells of several pairs."""
+        each = {name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])}
+        own = np.repeat(np.eye(len(parts)), [len(part.shot) for part in parts], axis=0)
+        return cls(**{**each, "shot": own})
 
 
 def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: Float32Array) -> Cells:
@@ -92,7 +92,7 @@ def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: 
         surroundings=logs - np.median(logs),
         place=np.dstack([x * 2 - columns + 1, y * 2 - rows + 1]) / np.hypot(rows, columns),
         tile=(y * 6 // rows + x * 8 // columns) % 2,
-        shot=np.zeros_like(x),
+        shot=np.ones((rows, columns, 1)),
     )  # each of shape (rows, columns, ...)
     is_flat = (spread.max(axis=-1) <= FLAT) & (uneven.max(axis=-1) <= EVEN) & is_inside
     flat = every.subset(is_flat)

@@ -24,8 +24,8 @@ from crfnet_core.types import BoolArray, Float64Array, Progress, show_progress
 #: Rounds of cells and fit: codes are averaged in the light of the last response.
 ROUNDS = 2
 
-#: Cells that a measurement needs; cells at white that show where it is.
-LEAST_CELLS, LEAST_WHITE = 300, 10
+#: Cells that a measurement needs, and each of its shots; cells at white that show where it is.
+LEAST_CELLS, LEAST_OF_SHOT, LEAST_WHITE = 300, 20, 10
 
 #: Least code that has to be seen, and the ones from which and up to which the shape counts as seen.
 LEAST_TOP, SEEN_TOP, SEEN_BOTTOM = 150.0, 235.0, 25.0
@@ -111,8 +111,7 @@ def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit,
     for _ in range(ROUNDS):
         inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
         cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
-        if (count := int((cells.is_open.all(axis=1) & ~cells.is_saturated).sum())) < LEAST_CELLS:
-            raise CalibrationError("few_cells", path=pairs[0].path, count=count, least=LEAST_CELLS)
+        _check_counts(pairs, (cells.is_open.all(axis=1) & ~cells.is_saturated) @ cells.shot)
         top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
         if top < LEAST_TOP:
             raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
@@ -123,6 +122,15 @@ def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit,
     if basis == WhiteBasis.RAW_CLIP:
         fit = fit_pairs(cells, saturation, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
     return cells, fit, basis
+
+
+def _check_counts(pairs: Sequence[Pair], counts: Float64Array) -> None:
+    """Refuse pairs that show too few usable cells, given how many each does, or one of them that shows hardly any."""
+    if counts.sum() < LEAST_CELLS:
+        raise CalibrationError("few_cells", path=pairs[0].path, count=int(counts.sum()), least=LEAST_CELLS)
+    if counts.min() < LEAST_OF_SHOT:
+        path = pairs[int(counts.argmin())].path
+        raise CalibrationError("few_cells", path=path, count=int(counts.min()), least=LEAST_OF_SHOT)
 
 
 def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
@@ -208,19 +216,19 @@ def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[Sh
             path=pair.path,
             jpeg=pair.jpeg,
             iso=pair.raw.iso,
-            cells=int((cells.shot == number).sum()),
-            offset=float(fit.offsets[number]),
-            residual=rms_codes(fit.residual[cells.shot == number]),
+            cells=int(own.sum()),
+            offset=float(offset),
+            residual=rms_codes(fit.residual[own]),
             correlation=pair.place.correlation,
         )
-        for number, pair in enumerate(pairs)
+        for pair, offset, own in zip(pairs, fit.offsets, cells.shot.T == 1, strict=True)
     )
 
 
 def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
     """Return `PairCalibration.points`."""
     chroma = np.ptp(cells.codes, axis=1) / np.maximum(cells.codes.max(axis=1), 1)
-    per_cell = (cells.shot, np.hypot(*cells.place.T), chroma, cells.surroundings)
+    per_cell = (cells.shot.argmax(axis=1), np.hypot(*cells.place.T), chroma, cells.surroundings)
     columns = [fit.log_light, cells.codes / 255, fit.residual]
     columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
     columns.append(np.broadcast_to(np.arange(3), counted.shape))
