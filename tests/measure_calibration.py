@@ -1,11 +1,11 @@
 """Measure `crfnet calibrate` on stacks of known responses, beside OpenCV, or on raw pairs: docs/CALIBRATE.md's tables.
 
 python -m tests.measure_calibration [--linear DIR] [--responses N] [--only NAME]
-python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--unseen] [--only NAME] [--verbose]
+python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--first N] [--only NAME] [--verbose]
 
 Scenes are the studio lights of tests/data/lights, or the linear pictures of another folder. Responses are those that
 the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn; for pairs also the measured
-ones in a folder of CSV files. The thresholds of pairs were set without --unseen.
+ones in a folder of CSV files. Thresholds of pairs were set, or changed, after draws before 300 and from 1000 to 1120.
 """
 
 import argparse
@@ -43,26 +43,23 @@ KINDS = {
 }
 
 #: Local tone mapping of simulated pairs, and ways to make two files that are not a pair.
-LOCAL = {f"pairs, local tone mapping {part}": part for part in (0.0, 0.05, 0.15)}
+LOCAL = {f"pairs, local tone mapping {part:.2f}": part for part in (0.0, 0.05, 0.15)}
 WRONG = ("another scene", "moved", "cropped", "edited")
 
 #: Other edits by programs that leave no name: the response stays, or is no longer the camera's.
 EDITS = ("crop of 99 %", "flipped", "blurred", "vignette", "saturation", "levels of a channel", "tone curve")
 
-#: Pairs that thresholds were set on, or that come before the unseen ones; the unseen ones have seeds from here on.
-SEEN_PAIRS, UNSEEN_SEED = 60, 1000
 
-
-def responses(count: int) -> list[ResponseCurve]:
-    """Return the responses: the bundled photograph's, then cameras and EMoR draws in turn."""
+def responses(count: int, first: int = 0) -> list[ResponseCurve]:
+    """Return responses: cameras and EMoR draws in turn, from a number on; before number 0 the bundled photograph's."""
     table = np.loadtxt(DATA / "plate_response.csv", delimiter=",", skiprows=1)
     bank, rng = ResponseBank.load(), np.random.default_rng(7)
     cameras = rng.permutation([i for i, family in enumerate(bank.families) if family in IN_CAMERA])
     drawn = [
-        emor_response(100 + i) if i % 2 else ResponseCurve.from_samples(bank.brightness[cameras[i]])
-        for i in range(count - 1)
+        emor_response(100 + i) if i % 2 else ResponseCurve.from_samples(bank.brightness[cameras[i % len(cameras)]])
+        for i in range(first, first + count)
     ]
-    return [ResponseCurve.from_samples(table[:, 1]), *drawn]
+    return drawn if first else [ResponseCurve.from_samples(table[:, 1]), *drawn[:-1]]
 
 
 def errors(true: ResponseCurve, found: ResponseCurve, counts: np.ndarray) -> tuple[float, float, float, float]:
@@ -119,21 +116,13 @@ def row(kind: str, found: dict[str, list]) -> str:
     return f"| {kind} | {len(ours)} | " + " | ".join(cells) + " |"
 
 
-def pair_curves(count: int, bodies: Path | None, *, unseen: bool) -> list[ResponseCurve]:
-    """Return `count` responses: measured bodies and the others in turn; unseen ones are of other bodies."""
+def pair_curves(count: int, bodies: Path | None, first: int) -> list[ResponseCurve]:
+    """Return `count` responses: measured bodies and the others in turn."""
     files = sorted(bodies.glob("*.csv")) if bodies else []
     order = [files[i] for i in np.random.default_rng(5).permutation(len(files))]
-    used = order[: SEEN_PAIRS // 2]
-    names = {body_name(path) for path in used}
-    chosen = [path for path in order if body_name(path) not in names] if unseen else used
-    known = [ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1]) for path in chosen]
-    others = iter(responses(100 + count)[100 if unseen else 0 :])
+    known = [ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1]) for path in order]
+    others = iter(responses(count, first))
     return [known[i // 2] if i % 2 == 0 and i // 2 < len(known) else next(others) for i in range(count)]
-
-
-def body_name(path: Path) -> str:
-    """Return the body of a measured response: several stacks of one are numbered."""
-    return path.stem.rstrip("0123456789")
 
 
 def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, options) -> dict:
@@ -221,15 +210,13 @@ def main() -> None:
     parser.add_argument("--only", default="", help="kinds whose name holds this")
     parser.add_argument("--pairs", type=int, default=0, help="raw pairs of each kind, in the place of stacks")
     parser.add_argument("--bodies", type=Path, help="folder of measured responses, .csv")
-    parser.add_argument("--unseen", action="store_true", help="pairs of other scenes, responses and draws")
+    parser.add_argument("--first", type=int, default=0, help="number of the first draw of pairs (0)")
     parser.add_argument("--verbose", action="store_true", help="a line for every pair")
     options = parser.parse_args()
     scenes = sorted(options.linear.glob("*.exr"))
     scenes = [scenes[i] for i in np.random.default_rng(3).permutation(len(scenes))]
     if options.pairs:
-        curves = pair_curves(options.pairs, options.bodies, unseen=options.unseen)
-        scenes = scenes[SEEN_PAIRS:] if options.unseen else scenes[:SEEN_PAIRS]
-        first = UNSEEN_SEED + SEEN_PAIRS if options.unseen else 0
+        curves, first = pair_curves(options.pairs, options.bodies, options.first), options.first
         for kind, local in LOCAL.items():
             if options.only in kind:
                 measure_pairs(kind, local, scenes, curves, first=first, verbose=options.verbose)

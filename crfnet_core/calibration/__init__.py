@@ -21,13 +21,7 @@ docs/CALIBRATE.md has the equations, and how good it is.
 
 from crfnet_core.calibration.calibrate import Calibration, FrameReport, calibrate_pairs, calibrate_stack
 from crfnet_core.calibration.exposures import ExposureLabel, parse_times
-from crfnet_core.calibration.measured import (
-    Comparison,
-    MeasuredResponse,
-    PairCalibration,
-    ShotReport,
-    Uncertainty,
-)
+from crfnet_core.calibration.measured import Comparison, MeasuredResponse, PairCalibration, ShotReport, Uncertainty
 
 __all__ = ["Calibration", "Comparison", "ExposureLabel", "FrameReport", "MeasuredResponse", "PairCalibration"]
 __all__ += ["ShotReport", "Uncertainty", "calibrate_pairs", "calibrate_stack", "parse_times"]

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.photo import CodeArray
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
+
+#: Axes of the values within a square: see `squares`.
+WITHIN = (1, 3)
 
 #: Cells along each side of a block, and blocks along a picture's longer side, about.
 CELLS, BLOCKS_ACROSS = 4, 190
@@ -78,22 +82,14 @@ class Observations:
 
 def block_means(codes: CodeArray, white: float) -> BlockMeans:
     """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
-    cell = cell_size(codes.shape[:2])
-    rows, columns = (side // (CELLS * cell) for side in codes.shape[:2])
-    cut = codes[: rows * CELLS * cell, : columns * CELLS * cell]
-    is_white = cut >= white * (1 - WHITE_MARGIN / 255)
-    means = _means(cut, cell) / white
-    cells = means.reshape(rows, CELLS, columns, CELLS, 3).swapaxes(1, 2).reshape(rows * columns, CELLS**2, 3)
+    cell = max(1, round(max(codes.shape) / (CELLS * BLOCKS_ACROSS)))  # so small pictures have fewer blocks
+    cells = squares(_means(codes, cell) / white, CELLS)
+    is_white = codes >= white * (1 - WHITE_MARGIN / 255)
     return BlockMeans(
-        brightness=np.minimum(cells.mean(axis=1), 1),
-        spread=cells.std(axis=1),
-        white=_means(is_white, CELLS * cell).reshape(rows * columns, 3),
+        brightness=np.minimum(cells.mean(axis=WITHIN), 1).reshape(-1, 3),
+        spread=cells.std(axis=WITHIN).reshape(-1, 3),
+        white=_means(is_white, CELLS * cell).reshape(-1, 3),
     )
-
-
-def cell_size(shape: tuple[int, ...]) -> int:
-    """Return the side of a cell in pixels: at least one, so small pictures have fewer blocks."""
-    return max(1, round(max(shape) / (CELLS * BLOCKS_ACROSS)))
 
 
 def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
@@ -137,7 +133,9 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observation
     color = np.ptp(levels[fit], axis=1)
     rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + color)
     bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
-    picked = _best_of_bins(rank, bins, BLOCKS)
+    parts = members_of_bins(bins, rank)
+    places = np.concatenate([np.arange(len(part)) for part in parts])
+    picked = np.concatenate(parts)[places.argsort(kind="stable")[:BLOCKS]]
     return seen.subset(np.isin(seen.block, fit[picked]))
 
 
@@ -154,18 +152,18 @@ def _check_often(is_often: BoolArray) -> None:
     raise CalibrationError("few_flat_places", count=samples, least=LEAST_SAMPLES)
 
 
-def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:
-    """Return the indices of about `count` elements of the lowest ranks, as evenly from the bins as they allow."""
+def members_of_bins(bins: NDArray[Any], rank: Float64Array) -> list[IndexArray]:
+    """Return the positions of the members of each bin, the ones of the lowest rank first."""
     order = np.lexsort((rank, bins))
-    starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) > 0]) if order.size else np.zeros(0, int)
-    sizes = np.diff(np.r_[starts, order.size])
-    rank_in_bin = np.arange(order.size) - np.repeat(starts, sizes)
-    return order[np.argsort(rank_in_bin, kind="stable")[:count]]
+    return np.split(order, np.flatnonzero(np.diff(bins[order])) + 1)
 
 
-def _means(values: CodeArray | BoolArray, side: int) -> Float64Array:
-    """Return the means of squares of `side` pixels, shape (H / side, W / side, 3)."""
-    height, width, channels = values.shape
-    sums = values.reshape(height // side, side, width, channels).sum(axis=1, dtype=np.uint32)
-    sums = sums.reshape(height // side, width // side, side, channels).sum(axis=2)
-    return np.asarray(sums / (side * side), dtype=np.float64)
+def squares(picture: NDArray[Any], side: int) -> NDArray[Any]:
+    """Return a picture of shape (H, W, ...) in squares: (H / side, side, W / side, side, ...), rounded down."""
+    rows, columns = picture.shape[0] // side, picture.shape[1] // side
+    return picture[: rows * side, : columns * side].reshape(rows, side, columns, side, *picture.shape[2:])
+
+
+def _means(picture: NDArray[Any], side: int) -> Float64Array:
+    """Return the means of squares, (H / side, W / side, 3); along one axis after the other, which is much faster."""
+    return np.asarray(squares(picture, side).mean(axis=1).mean(axis=2), dtype=np.float64)

@@ -1,27 +1,20 @@
 """Measure a camera's response from an exposure stack: the whole of it on one screen; and the door to raw pairs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
+from crfnet_core.calibration import checks
 from crfnet_core.calibration.alignment import Shift
 from crfnet_core.calibration.blocks import Observations, block_means, observe
-from crfnet_core.calibration.checks import (
-    check_labels,
-    check_measurement,
-    check_range,
-    check_seen,
-    nearest_known,
-    notices_of,
-)
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.uncertainty import uncertainty_of
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
@@ -78,33 +71,35 @@ def calibrate_stack(
     Raise PhotoError if a frame cannot be read, and CalibrationError if the frames are not a stack, or no camera
     response explains them.
     """
-    frames = _labeled(read_frames(paths, progress=progress), seconds)
-    check_labels(frames, accept_edited=accept_edited)
+    frames = read_frames(paths, progress=progress)
+    frames = frames if seconds is None else _labeled(frames, seconds)
+    checks.check_labels(frames, accept_edited=accept_edited)
     exposures = stack_exposures([frame.label for frame in frames])
-    check_range(exposures)
+    checks.check_range(exposures)
     white = white_level(frames)
     codes, shifts = align(frames, exposures.nominal.argsort().tolist())
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
-    check_seen(white * every.brightness[every.is_used])
-    labels, measurement, other = _measured(every, _readings(exposures, frames[0]))
+    checks.check_seen(white * every.brightness[every.is_used])
+    readings = _readings(exposures, frames[0])
+    labels, measurement, other = _measured(every, readings)
     names = [frame.path.name for frame in frames]
-    check_measurement(measurement, names, white=white)
+    checks.check_measurement(measurement, names, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
         uncertainty=uncertainty_of(measurement, other, white=white),
-        residual=white * measurement.residual,
+        residual=white * rms_codes(measurement.fit.residual),
         white=white,
         reaches_white=measurement.anchor.is_seen,
-        labels=labels.name,
-        nearest_known=nearest_known(measurement.curve),
+        labels=labels,
+        nearest_known=checks.nearest_known(measurement.curve),
         metadata=frames[0].metadata,
-        frames=_frame_reports(frames, measurement, labels.stops, shifts, white=white),
+        frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=notices_of(measurement, names, exposures, white=white),
+        warnings=checks.notices_of(measurement, names, exposures, white=white),
     )
 
 
@@ -119,46 +114,38 @@ def calibrate_pairs(
     return measure_pairs(paths, accept_edited=accept_edited, progress=progress)
 
 
-def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
-    """Return the frames with the stated times, if there are any."""
-    if seconds is None:
-        return tuple(frames)
+def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
+    """Return the frames with stated times."""
     if len(seconds) != len(frames):
         raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
-    pairs = zip(frames, seconds, strict=True)
-    return tuple(replace(frame, label=replace(frame.label, seconds=time)) for frame, time in pairs)
+    labels = [replace(frame.label, seconds=time) for frame, time in zip(frames, seconds, strict=True)]
+    return [replace(frame, label=label) for frame, label in zip(frames, labels, strict=True)]
 
 
-class _Reading(NamedTuple):
-    """A way to read the exposure labels."""
-
-    name: str
-    stops: Float64Array
-    bonus: float
-
-
-def _readings(exposures: Exposures, first: Frame) -> list[_Reading]:
+def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:
     """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
-    nominal = _Reading("nominal", exposures.nominal, 0)
+    nominal = {"nominal": exposures.nominal}
     is_phone = device_of(first.metadata.make, first.metadata.model) is Device.PHONE
     if exposures.snapped is None or is_phone:
-        return [nominal]
-    snapped = _Reading("exact powers of two", exposures.snapped, SNAPPED_BONUS)
+        return nominal
+    snapped = {"exact powers of two": exposures.snapped}
     is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS
-    return [snapped] if is_same else [snapped, nominal]
+    return snapped if is_same else snapped | nominal
 
 
-def _measured(every: Observations, readings: Sequence[_Reading]) -> tuple[_Reading, Measurement, ResponseCurve | None]:
-    """Return the reading of the labels that costs less, its measurement, and the other reading's response."""
-    first, *others = readings
-    measurement = measure(every, first.stops)
-    if not others:
-        return first, measurement, None
-    other = others[0]
-    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], measurement.fit.weights)
-    if measurement.fit.cost - first.bonus <= again.fit.cost - other.bonus:
-        return first, measurement, again.curve
-    return other, replace(again, frames=measurement.frames, outliers=measurement.outliers), measurement.curve
+def _measured(
+    every: Observations, readings: Mapping[str, Float64Array]
+) -> tuple[str, Measurement, ResponseCurve | None]:
+    """Return the first reading of the labels or a much better other, its measurement, and the other's response."""
+    (labels, stops), *others = readings.items()
+    measurement = measure(every, stops)
+    for other, stops in others:
+        again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
+        if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
+            again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
+            return other, again, measurement.curve
+        return labels, measurement, again.curve
+    return labels, measurement, None
 
 
 def _frame_reports(

@@ -5,13 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from crfnet_core.calibration.blocks import Observations
+from crfnet_core.calibration.blocks import Observations, members_of_bins
+from crfnet_core.calibration.curve_model import in_camera_responses
 from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measurement import Measurement
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.errors import CalibrationError, Notice, beside_limits
 from crfnet_core.photograph.metadata import file_origin
-from crfnet_core.posterior import IN_CAMERA, ResponseBank
+from crfnet_core.posterior import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
@@ -53,8 +55,8 @@ def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
 
 def check_range(exposures: Exposures) -> None:
     """Refuse exposures that span less than `LEAST_RANGE` stops, or neighbors more than `LARGEST_STEP` stops apart."""
-    if exposures.range < LEAST_RANGE - ROUNDING:
-        raise CalibrationError("exposures_span", span=beside_limits(exposures.range, LEAST_RANGE), least=LEAST_RANGE)
+    if (span := float(np.ptp(exposures.nominal))) < LEAST_RANGE - ROUNDING:
+        raise CalibrationError("exposures_span", span=beside_limits(span, LEAST_RANGE), least=LEAST_RANGE)
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP + ROUNDING:
         raise CalibrationError("exposures_gap", step=beside_limits(step, LARGEST_STEP))
 
@@ -70,7 +72,7 @@ def check_seen(brightness: Float64Array) -> None:
 def check_measurement(measurement: Measurement, names: Sequence[str], *, white: float) -> None:
     """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response."""
     used, left_out = _names(measurement, names)
-    residual = white * measurement.residual
+    residual = white * rms_codes(measurement.fit.residual)
     is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
     if is_moved or (residual > MOST_RESIDUAL and scatter(measurement.seen, measurement.exposures) > MOST_SCATTER):
         raise CalibrationError("scene_moved", which=f"{', '.join(left_out)} and more" if left_out else "some blocks")
@@ -112,9 +114,8 @@ def notices_of(
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:
     """Return E_est between a response and the nearest packaged one: ordinary, or of cameras' own rendering only."""
     bank = ResponseBank.load()
-    members = np.any([bank.members(family) for family in IN_CAMERA], axis=0) if in_camera else bank.ordinary
-    off = bank.brightness[members] - curve.brightness
-    return float(np.sqrt((off**2).sum(axis=1).min()))
+    known = in_camera_responses() if in_camera else bank.brightness[bank.ordinary]
+    return float(np.linalg.norm(known - curve.brightness, axis=1).min())
 
 
 def scatter(seen: Observations, exposures: Float64Array) -> float:
@@ -122,15 +123,12 @@ def scatter(seen: Observations, exposures: Float64Array) -> float:
 
     Frames are compared with the next brighter one, per channel, in `EQUAL_LEVELS` levels.
     """
-    order = exposures.argsort()
     deviations = []
-    for first, second in pairwise(order.tolist()):
-        for channel in np.unique(seen.channel):
-            both = seen.is_used[:, first] & seen.is_used[:, second] & (seen.channel == channel)
-            codes = 255 * seen.brightness[both][:, [first, second]]
-            level = np.floor(codes[:, 0] * EQUAL_LEVELS / 256).astype(int)
-            parts = [codes[level == value, 1] for value in np.unique(level)]
-            deviations += [float(np.std(part)) for part in parts if len(part) >= 4]
+    for first, second in pairwise(exposures.argsort().tolist()):
+        both = seen.is_used[:, first] & seen.is_used[:, second]
+        before, after = 255 * seen.brightness[both][:, [first, second]].T
+        levels = np.floor(before * EQUAL_LEVELS / 256) + EQUAL_LEVELS * seen.channel[both]
+        deviations += [after[part].std() for part in members_of_bins(levels, after) if len(part) >= 4]
     return float(np.median(deviations)) if deviations else 0.0
 
 

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.types import Float64Array, IndexArray
+from crfnet_core.types import Float32Array, Float64Array, IndexArray
 
-#: log2 of the least and of the largest irradiance, white = 1, and steps to a stop of the table between them.
+#: log2 of the least and of the largest irradiance, white = 1, steps to a stop between them, and the table.
 LOWEST, HIGHEST, STEPS = -14.0, 1.0, 32
+TABLE = np.arange(round((HIGHEST - LOWEST) * STEPS) + 1) / STEPS + LOWEST
 
 #: Knots of the splines in brightness of the mean response: dense at both ends, where EMoR is too stiff.
 KNOTS = (
@@ -91,7 +92,7 @@ class CurveModel:
         """Return log2 of the irradiance that the response with `weights`, shape (K,), needs for `brightness`."""
         table = np.maximum.accumulate(self.mean + self.basis @ weights)
         rising = table + 1e-9 * np.arange(len(table))
-        return np.interp(brightness, rising, table_stops())
+        return np.interp(brightness, rising, TABLE)
 
     def response(self, weights: ArrayLike, *, log_white: float = 0.0) -> ResponseCurve:
         """Return the response with `weights`, shape (K,), as a strictly monotone curve.
@@ -101,18 +102,22 @@ class CurveModel:
         irradiance = np.linspace(0, 1, SAMPLES)
         table = self.mean + self.basis @ np.asarray(weights, dtype=np.float64)
         stops = np.log2(np.maximum(irradiance, 1e-9)) + log_white
-        samples = np.interp(stops, table_stops(), table)
+        samples = np.interp(stops, TABLE, table)
         low = stops < LOWEST  # as at the bottom of every sampled response, a straight line leads to black
         samples[low] = table[0] * np.exp2(stops[low] - LOWEST)
         samples[0] = 0.0
         return ResponseCurve.from_samples(np.append(np.minimum(samples[:-1], 1), 1.0))
 
 
-def in_camera_mean() -> ResponseCurve:
-    """Return the mean response of cameras' own renderings: the start of a fit, and the center of its prior."""
+def in_camera_responses() -> Float32Array:
+    """Return the packaged responses of cameras' own renderings, (N, 1024)."""
     bank = ResponseBank.load()
-    members = np.any([bank.members(family) for family in IN_CAMERA], axis=0)
-    return ResponseCurve.from_samples(bank.brightness[members].mean(axis=0, dtype=np.float64))
+    return bank.brightness[np.any([bank.members(family) for family in IN_CAMERA], axis=0)]
+
+
+def in_camera_mean() -> ResponseCurve:
+    """Return the mean of these responses: the start of a fit, and the center of its prior."""
+    return ResponseCurve.from_samples(in_camera_responses().mean(axis=0, dtype=np.float64))
 
 
 def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
@@ -132,11 +137,6 @@ def _position(log_irradiance: Float64Array) -> tuple[IndexArray, Float64Array]:
     return below, position - below
 
 
-def table_stops() -> Float64Array:
-    """Return the table's log2 of irradiance, shape (G,)."""
-    return np.arange(round((HIGHEST - LOWEST) * STEPS) + 1) / STEPS + LOWEST
-
-
 def cubic_splines(mean: Float64Array) -> Float64Array:
     """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both ends.
 
@@ -154,7 +154,7 @@ def cubic_splines(mean: Float64Array) -> Float64Array:
 
 def _tabulated(curve: Float64Array) -> Float64Array:
     """Return a curve of shape (1024,) over uniform irradiance on the table, continued beyond white: (G,)."""
-    irradiance = np.exp2(table_stops())
+    irradiance = np.exp2(TABLE)
     slope = (curve[-1] - curve[-1 - END_SAMPLES]) * (SAMPLES - 1) / END_SAMPLES
     inside = np.interp(irradiance, np.linspace(0, 1, SAMPLES), curve)
     return np.asarray(inside + slope * np.maximum(irradiance - 1, 0), dtype=np.float64)

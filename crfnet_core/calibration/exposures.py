@@ -52,11 +52,6 @@ class Exposures:
     snapped: Float64Array | None
     differing: tuple[str, ...]  # the settings other than the time that differ between the frames: "ISO", "aperture"
 
-    @property
-    def range(self) -> float:
-        """Stops between the shortest and the longest exposure."""
-        return float(np.ptp(self.nominal))
-
 
 def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
     """Return the exposures of frames; each label needs its time.
@@ -67,13 +62,9 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
     seconds = _stops([label.seconds for label in labels])
     iso, aperture = _stops([label.iso for label in labels]), -2 * _stops([label.f_number for label in labels])
     parts = [seconds, iso, aperture]
-    rounded = [_snapped(part) for part in parts]
+    snapped = [part for part in map(_snapped, parts) if part is not None]
     differing = [name for name, part in (("ISO", iso), ("aperture", aperture)) if np.ptp(part) > 0]
-    nominal = np.sum(parts, axis=0)
-    known = [part for part in rounded if part is not None]
-    snapped = np.sum(known, axis=0) if len(known) == len(parts) else None
-    centered = None if snapped is None else snapped - snapped.mean()
-    return Exposures(nominal - nominal.mean(), centered, tuple(differing))
+    return Exposures(_centered(parts), _centered(snapped) if len(snapped) == len(parts) else None, tuple(differing))
 
 
 def parse_times(text: str) -> tuple[float, ...]:
@@ -91,6 +82,12 @@ def _seconds(text: str) -> float:
     if not 0 < value < math.inf:
         raise CalibrationError("bad_seconds", text=text.strip())
     return value
+
+
+def _centered(parts: Sequence[Float64Array]) -> Float64Array:
+    """Return the sum of stops, relative to its mean."""
+    total = np.sum(parts, axis=0)
+    return np.asarray(total - total.mean(), dtype=np.float64)
 
 
 def _stops(values: Sequence[float | None]) -> Float64Array:

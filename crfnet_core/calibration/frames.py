@@ -42,13 +42,8 @@ class Frame:
     metadata: FileMetadata  # the rest of the file's header
     is_gray: bool  # whether the three channels are equal everywhere
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of the file's picture in pixels."""
-        return self.metadata.width, self.metadata.height
 
-
-def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> tuple[Frame, ...]:
+def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> list[Frame]:
     """Read the frames of one static scene, checked to be of one size, bit depth and camera.
 
     Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, or they
@@ -61,12 +56,12 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
     path, times = Counter(path.resolve() for path in paths).most_common(1)[0]
     if times > 1:
         raise CalibrationError("frame_twice", path=path)
-    frames = []
+    frames: list[Frame] = []
     for number, path in enumerate(paths):
         frames.append(_frame(path, read_codes(path)))
         _check_like_first(frames[0], frames[-1])
         show_progress(progress, number + 1, len(paths))
-    return tuple(frames)
+    return frames
 
 
 def white_level(frames: Sequence[Frame]) -> float:
@@ -137,8 +132,8 @@ def _frame(path: Path, values: CodeValues) -> Frame:
 def _check_like_first(first: Frame, frame: Frame) -> None:
     """Refuse a frame whose size, bit depth or camera differs from the first frame's."""
     path, first_name = frame.path, first.path.name
-    if frame.size != first.size:
-        sizes = [f"{width} x {height}" for width, height in (frame.size, first.size)]
+    sizes = [f"{each.metadata.width} x {each.metadata.height}" for each in (frame, first)]
+    if sizes[0] != sizes[1]:
         raise CalibrationError("frame_size", path=path, size=sizes[0], first=first_name, first_size=sizes[1])
     if frame.largest != first.largest:
         raise CalibrationError("frame_bits", path=path, first=first_name)

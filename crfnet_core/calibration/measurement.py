@@ -10,6 +10,7 @@ import numpy as np
 from crfnet_core.calibration.blocks import PARTLY_WHITE, Observations, pick_blocks
 from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.frames import LEAST_FRAMES
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.solver import StackFit, fit_stack, rough_irradiance
 from crfnet_core.errors import CalibrationError, beside_limits
 from crfnet_core.response.curve import ResponseCurve
@@ -70,11 +71,6 @@ class Measurement:
     curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
     outliers: float  # fraction of the samples that were left out
 
-    @property
-    def residual(self) -> float:
-        """Root mean square of brightness less the model's, white = 255."""
-        return float(255 * np.sqrt(np.nanmean(self.fit.residual**2)))
-
 
 def measure(every: Observations, exposures: Float64Array) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
@@ -93,8 +89,11 @@ def measure(every: Observations, exposures: Float64Array) -> Measurement:
         if worst is None or frames.sum() < LEAST_FRAMES:
             break
         frames[np.flatnonzero(frames)[worst]] = False
-        _check_rest(exposures[frames], len(frames))
-    is_outlier = _outliers(seen, measurement.fit)
+        if (span := float(np.ptp(exposures[frames]))) < LEAST_REST:
+            facts = {"unfit": int((~frames).sum()), "count": len(frames), "least": LEAST_REST}
+            raise CalibrationError("rest_span", span=beside_limits(span, LEAST_REST), **facts)
+    off = (np.abs(np.nan_to_num(measurement.fit.residual)) / seen.deviation).max(axis=1)
+    is_outlier = off > OUTLIER * max(1.0, float(np.median(off)))
     if is_outlier.any() and not is_outlier.all():
         measurement = fit_and_anchor(seen.subset(~is_outlier), stops, measurement.fit.weights)
     return replace(measurement, frames=frames, outliers=float(is_outlier.mean()))
@@ -158,9 +157,7 @@ def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, flo
 
 def frame_residuals(fit: StackFit) -> Float64Array:
     """Return the root mean square residual of each frame, white = 255, shape (T,); 0 where it shows nothing."""
-    squares = np.where(np.isfinite(fit.residual), fit.residual, 0) ** 2
-    count = np.isfinite(fit.residual).sum(axis=0)
-    return np.asarray(255 * np.sqrt(squares.sum(axis=0) / np.maximum(count, 1)), dtype=np.float64)
+    return np.nan_to_num([rms_codes(frame) for frame in fit.residual.T])
 
 
 def _worst_frame(fit: StackFit) -> int | None:
@@ -169,17 +166,3 @@ def _worst_frame(fit: StackFit) -> int | None:
     worst = int(residuals.argmax())
     others = float(np.median(np.delete(residuals, worst)))
     return worst if residuals[worst] > max(WORST_FRAME, WORSE_THAN_OTHERS * others) else None
-
-
-def _check_rest(stops: Float64Array, count: int) -> None:
-    """Refuse the frames that fit each other, of `count` frames, if their exposures span too few stops."""
-    if (span := float(np.ptp(stops))) < LEAST_REST:
-        span_text = beside_limits(span, LEAST_REST)
-        raise CalibrationError("rest_span", unfit=count - len(stops), count=count, span=span_text, least=LEAST_REST)
-
-
-def _outliers(seen: Observations, fit: StackFit) -> BoolArray:
-    """Return which samples do not fit in some frame, shape (M,)."""
-    scaled = np.abs(np.where(np.isfinite(fit.residual), fit.residual, 0)) / seen.deviation
-    worst = scaled.max(axis=1)
-    return np.asarray(worst > OUTLIER * max(1.0, float(np.median(worst))), dtype=bool)

@@ -31,6 +31,7 @@ class FittedResponse:
 
     weights: Float64Array  # (K,)
     covariance: Float64Array  # (K, K): their posterior covariance
+    residual: Float64Array  # brightness less the model's; NaN where nothing counts
 
     def response(self, *, log_white: float = 0.0) -> ResponseCurve:
         """Return the response; `log_white` is log2 of the irradiance of white in the units of the fit."""
@@ -130,6 +131,12 @@ class ResponseProblem(ABC):
         """Return the posterior covariance of the weights, shape (K, K)."""
         inverse = np.linalg.inv(self.normal_equations(state)[1])
         return np.asarray(inverse[: self.size, : self.size], dtype=np.float64)
+
+
+def rms_codes(residual: Float64Array) -> float:
+    """Return the root mean square of what counts of a residual, white = 255; NaN if nothing does."""
+    counted = residual[np.isfinite(residual)]
+    return float(255 * np.sqrt(np.mean(counted**2))) if len(counted) else float("nan")
 
 
 def huber_cost(scaled: Float64Array) -> Float64Array:

@@ -28,7 +28,6 @@ class StackFit(FittedResponse):
     offsets: Float64Array  # (T, C): stops by which each frame is brighter than its label, in each channel
     #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; white is 0.
     log_irradiance: Float64Array
-    residual: Float64Array  # (M, T): brightness less the model's; NaN where nothing was seen
     cost: float  # Eq. C.2
 
     def exposed(self, exposures: Float64Array, seen: Observations) -> Float64Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -32,32 +32,28 @@ def uncertainty_of(measurement: Measurement, other_labels: ResponseCurve | None,
     `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
     exposure labels, if there is one.
     """
-    curve = in_file_codes(measurement.curve, white)
     even = measurement.seen.block % 2 == 0
     parts = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
-    first, second = (in_file_codes(part, white) for part in parts)
-    alone = (_channel_curve(measurement, channel) for channel in range(measurement.fit.offsets.shape[1]))
-    channels = [in_file_codes(channel, white) for channel in alone]
-    others = [] if other_labels is None else [in_file_codes(other_labels, white)]
+    alone = [_channel_curve(measurement, channel) for channel in range(measurement.fit.offsets.shape[1])]
+    others = [] if other_labels is None else [other_labels]
+    curve, first, second = (in_file_codes(each, white) for each in (measurement.curve, *parts))
+
+    def disagreements(error: Callable[[ResponseCurve, ResponseCurve], float]) -> dict[str, float]:
+        """Return how far responses are apart that should be one."""
+        return {
+            "sampling": abs(error(first, second)) / 2,
+            "channels": CHANNEL_PART * _rms([error(curve, in_file_codes(each, white)) for each in alone]),
+            "labels": 0.5 * _rms([error(curve, in_file_codes(each, white)) for each in others]),
+        }
+
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
-    posterior = measurement.fit.deviations(codes)
-    shape = {
-        "posterior": posterior[0],
-        "sampling": shape_error(first, second) / 2,
-        "channels": CHANNEL_PART * _rms(shape_error(curve, channel) for channel in channels),
-        "times": _time_deviation(measurement, codes),
-        "labels": 0.5 * _rms(shape_error(curve, other) for other in others),
-        "least": LEAST_SHAPE,
-    }
-    scale = {
-        "posterior": posterior[1],
-        "sampling": abs(scale_error(first, second)) / 2,
-        "channels": CHANNEL_PART * _rms(scale_error(curve, channel) for channel in channels),
-        "white": measurement.anchor.deviation,
-        "labels": 0.5 * _rms(scale_error(curve, other) for other in others),
-        "least": LEAST_SCALE,
-    }
-    return Uncertainty(shape, scale)
+    shape, scale = measurement.fit.deviations(codes)
+    trend = TIME_DEVIATION / np.linalg.norm(measurement.exposures - measurement.exposures.mean())
+    times = float(trend * np.log2(measurement.curve.inverse(codes)).std())
+    return Uncertainty(
+        {"posterior": shape, **disagreements(shape_error), "times": times, "least": LEAST_SHAPE},
+        {"posterior": scale, **disagreements(scale_error), "white": measurement.anchor.deviation, "least": LEAST_SCALE},
+    )
 
 
 def _curve_of(seen: Observations, exposures: Float64Array, measurement: Measurement) -> ResponseCurve:
@@ -74,13 +70,6 @@ def _channel_curve(measurement: Measurement, channel: int) -> ResponseCurve:
     return _curve_of(alone, measurement.exposures + measurement.fit.offsets[:, channel], measurement)
 
 
-def _time_deviation(measurement: Measurement, codes: Float64Array) -> float:
-    """Return the shape error in stops at some codes if labels are off by `TIME_DEVIATION` each: a trend bends it."""
-    trend = TIME_DEVIATION / np.sqrt(((measurement.exposures - measurement.exposures.mean()) ** 2).sum())
-    return float(trend * np.log2(measurement.curve.inverse(codes)).std())
-
-
-def _rms(values: Iterable[float]) -> float:
+def _rms(values: Sequence[float]) -> float:
     """Return the root mean square, 0 of nothing."""
-    squares = [value**2 for value in values]
-    return float(np.sqrt(np.mean(squares))) if squares else 0.0
+    return float(np.linalg.norm(values) / np.sqrt(max(len(values), 1)))

@@ -19,39 +19,41 @@ Measured = Calibration | PairCalibration
 
 def calibration_lines(calibration: Measured) -> list[str]:
     """Return the measurement and how far to trust it, in plain words: one line each."""
-    white, fit = _pair_words(calibration) if isinstance(calibration, PairCalibration) else _stack_words(calibration)
+    fit = _pair_words(calibration) if isinstance(calibration, PairCalibration) else _stack_words(calibration)
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     return [
         f"{_source_words(calibration)}.",
         f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale relative to white to"
-        f" {scale:.2f} stop (standard deviations){white}.",
+        f" {scale:.2f} stop (standard deviations); {white_words(calibration)}.",
         fit,
         *(f"Warning: {warning}." for warning in calibration.warnings),
     ]
 
 
-def _stack_words(calibration: Calibration) -> tuple[str, str]:
-    """Return how white of a stack is known, and how well the curve explains it."""
-    white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
+def white_words(calibration: Measured) -> str:
+    """Return how it is known where white is, and of raw files which codes were seen."""
+    if isinstance(calibration, PairCalibration):
+        low, high = calibration.codes_seen
+        return f"codes {low:.0f} to {high:.0f} were seen; where white is: {calibration.white_basis}"
+    return "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
+
+
+def _stack_words(calibration: Calibration) -> str:
+    """Return how well the curve explains a stack."""
     offsets = [float(frame.offsets[len(frame.offsets) // 2]) for frame in calibration.frames if frame.is_used]
-    fit = (
+    return (
         f"The curve explains the frames to {calibration.residual:.1f} of 255 codes (RMS); their exposures were read as"
         f" {calibration.labels} and are {max(map(abs, offsets)):.2f} stop from that at most."
     )
-    return f"; {white}", fit
 
 
-def _pair_words(calibration: PairCalibration) -> tuple[str, str]:
-    """Return what was seen of raw files and how white is known, and how well the curve explains them."""
-    low, high = calibration.codes_seen
+def _pair_words(calibration: PairCalibration) -> str:
+    """Return how well the curve explains raw files and their JPEGs."""
     offsets = [shot.offset for shot in calibration.shots]
     apart = f"; the shots are {np.ptp(offsets):.2f} stop apart at most" if len(offsets) > 1 else ""
     corner = f" The camera brightens the corners by {calibration.corner:.2f} stop." if calibration.corner > 0.1 else ""
-    return (
-        f". Codes {low:.0f} to {high:.0f} were seen; where white is: {calibration.white_basis}",
-        f"One curve and one color matrix explain the JPEG to {calibration.residual:.1f} of 255 codes (RMS){apart}."
-        f"{corner}",
-    )
+    residual = f"{calibration.residual:.1f} of 255 codes (RMS)"
+    return f"One curve and one color matrix explain the JPEG to {residual}{apart}.{corner}"
 
 
 def comparison_lines(comparison: Comparison) -> list[str]:
@@ -67,13 +69,10 @@ def comparison_lines(comparison: Comparison) -> list[str]:
 
 def calibration_provenance(calibration: Measured) -> tuple[str, ...]:
     """Return the comment lines of LUT files: the LUT, its frames, and how far to trust it."""
-    seen = ""
-    if isinstance(calibration, PairCalibration):
-        seen = ", codes {:.0f} to {:.0f}".format(*calibration.codes_seen)
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     return (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
-        f"Measured from {_source_words(calibration)}{seen}",
+        f"Measured from {_source_words(calibration)}; {white_words(calibration)}",
         f"Standard deviations: shape {shape:.3f} stop, scale {scale:.3f} stop",
     )
 

@@ -14,7 +14,7 @@ from crfnet_core.calibration import PairCalibration
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
-from . import Measured, calibration_lines
+from .calibration import Measured, calibration_lines, white_words
 from .sheet import (
     BOTTOM,
     CURVE,
@@ -39,9 +39,10 @@ FRAMES = "viridis"
 #: Largest residual that is drawn, in 8-bit codes.
 LARGEST_RESIDUAL = 8
 
-#: Colors of the channels; causes of residuals -> the column of `PairCalibration.points`.
+#: Colors of the channels; causes of residuals -> the column of `points`; the gap between their axes.
 CHANNELS = np.array([[0.76, 0.18, 0.16, 0.6], [0.12, 0.52, 0.24, 0.6], [0.1, 0.4, 0.76, 0.6]])
-CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
+PAIR_CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
+STACK_CAUSES, GAP = {"Irradiance in stops, white = 0": 0}, 0.02
 
 
 def draw_calibration(path: Path, calibration: Measured) -> None:
@@ -53,21 +54,19 @@ def draw_calibration(path: Path, calibration: Measured) -> None:
         points = figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper))
         if isinstance(calibration, PairCalibration):
             colors = CHANNELS[calibration.points[:, 7].astype(int)]
-            _draw_points(points, calibration, colors, "Cells of every shot, over irradiance in stops")
-            for number, (title, column) in enumerate(CAUSES.items()):
-                axes = figure.add_axes((0.56 + number * 0.144, BOTTOM, 0.124, lower))
-                _draw_residuals(axes, calibration, column, colors, title)
-                axes.set_ylabel("Residual (codes)" if number == 0 else "")
-                axes.tick_params(labelleft=number == 0)
+            title, causes = "Cells of every shot, over irradiance in stops", PAIR_CAUSES
         else:
             stops = np.array([frame.stops for frame in calibration.frames])
             place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
             colors = np.asarray(colormaps[FRAMES](0.9 * place))[calibration.points[:, 3].astype(int)]
-            _draw_points(points, calibration, colors, "Points of every frame, dark to bright")
-            points.tick_params(labelbottom=False)
-            axes = figure.add_axes((0.56, BOTTOM, 0.412, lower))
-            _draw_residuals(axes, calibration, 0, colors, "Irradiance in stops, white = 0")
-            axes.set_xlim(DARKEST, 0.5)
+            title, causes = "Points of every frame, dark to bright, over irradiance in stops", STACK_CAUSES
+        _draw_points(points, calibration, colors, title)
+        step = (0.412 + GAP) / len(causes)
+        for number, (cause, column) in enumerate(causes.items()):
+            axes = figure.add_axes((0.56 + number * step, BOTTOM, step - GAP, lower))
+            _draw_residuals(axes, calibration, column, colors, cause)
+            axes.set_ylabel("Residual (codes)" if number == 0 else "")
+            axes.tick_params(labelleft=number == 0)
 
 
 def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
@@ -79,21 +78,13 @@ def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
         f"shape to {uncertainty.shape_stops:.2f} stop",
         f"scale to {uncertainty.scale_stops:.2f} stop",
         f"residual {calibration.residual:.1f} codes (RMS)",
-        _white_words(calibration),
+        white_words(calibration),
     ]
     figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
     lines = calibration_lines(calibration)
     figure.text(0.058, 0.868, ellipsized(lines[0], LONGEST_LINE), va="center", color=QUIET)
     warnings = ellipsized(DOT.join(map(str, calibration.warnings)), LONGEST_LINE)
     figure.text(0.058, 0.026, warnings, va="center", color=WARNING_INK)
-
-
-def _white_words(calibration: Measured) -> str:
-    """Return how white is known, and of pairs the codes that were seen."""
-    if isinstance(calibration, PairCalibration):
-        low, high = calibration.codes_seen
-        return f"codes {low:.0f} to {high:.0f} seen{DOT}white: {calibration.white_basis}"
-    return "white reached" if calibration.reaches_white else "white not reached"
 
 
 def _draw_curve(axes: Axes, calibration: Measured) -> None:
@@ -132,5 +123,5 @@ def _draw_residuals(axes: Axes, calibration: Measured, column: int, colors: Floa
         parts = np.array_split(cause.argsort(), 8)
         axes.plot([np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=INK)
     axes.axhline(0, color=INK, linewidth=1)
-    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title, ylabel="Residual (codes)")
+    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
     plain(axes)

@@ -41,8 +41,8 @@ class PairFit(FittedResponse):
     corner: float  # stops by which the corner is brightened
     tilts: Float64Array  # (S, 2): stops a place (see `Cells.place`) by which each shot brightens, right and down
     offsets: Float64Array  # (S,): stops by which each shot is brighter than the first; its own is 0
-    log_light: Float64Array  # (N, 3): log2 of the light of every cell
-    residual: Float64Array  # (N, 3): brightness less the model's; NaN where nothing counts
+    log_light: Float64Array  # (N, 3), as `residual`: log2 of the light of every cell
+    state: Float64Array  # all unknowns: see `_PairProblem`
     headroom: float  # stops by which raw saturation of a white surface lies above white
     outliers: float  # fraction of what could count that fits in no way
 
@@ -60,7 +60,7 @@ def fit_pairs(
     above white, and their standard deviation.
     """
     problem = _PairProblem(cells, saturation, headroom)
-    state = problem.start() if start is None else problem.packed(start)
+    state = problem.start() if start is None else start.state
     problem.reweight(state, np.hypot(1, problem.chroma))
     for number in range(ROUNDS):
         state = problem.solved(state)
@@ -81,12 +81,10 @@ class _PairProblem(ResponseProblem):
         is_white = near_white & ~cells.is_saturated[:, None]
         super().__init__(codes.ravel() / 255, cells.deviation.ravel() / 255, is_white.ravel())
         self.cells, self.expected, self.saturation = cells, headroom, np.full(3, saturation)
-        self.shots = int(cells.shot.max()) + 1
-        own = (cells.shot[:, None] == np.arange(self.shots)).astype(np.float64)
-        tilts = (own[:, :, None] * cells.place[:, None]).reshape(len(own), -1)
+        tilts = (cells.shot[:, :, None] * cells.place[:, None]).reshape(len(codes), -1)
         corner = (cells.place**2).sum(axis=1)
-        self.causes = np.column_stack([cells.surroundings, corner, tilts, own[:, 1:]])
-        others = [TILT_DEVIATION] * tilts.shape[1] + [SHOT_DEVIATION] * (self.shots - 1)
+        self.causes = np.column_stack([cells.surroundings, corner, tilts, cells.shot[:, 1:]])
+        others = [TILT_DEVIATION] * tilts.shape[1] + [SHOT_DEVIATION] * (cells.shot.shape[1] - 1)
         self.precision = np.array([LOCAL_DEVIATION, CORNER_DEVIATION, *others]) ** -2.0
         self.chroma = np.ptp(codes, axis=1, keepdims=True) / np.maximum(codes.max(axis=1, keepdims=True), 1) / 0.35
 
@@ -97,37 +95,31 @@ class _PairProblem(ResponseProblem):
         scale = np.exp2(np.median(np.log2(light[known] / self.cells.light[known])))
         return np.concatenate([self.model.center, (scale * np.eye(3)).ravel(), 0 * self.precision])
 
-    def packed(self, fit: PairFit) -> Float64Array:
-        """Return the unknowns of a fit of cells of the same shots."""
-        causes = [fit.local, fit.corner, *fit.tilts.ravel(), *fit.offsets[1:]]
-        return np.concatenate([fit.weights, fit.matrix.ravel(), causes])
-
     def unpacked(self, state: Float64Array) -> PairFit:
         """Return the fit, with its covariance."""
-        matrix, causes = self.parts(state[self.size :])
+        shots = self.cells.shot.shape[1]
+        ends = np.cumsum([self.size, 9, 2, 2 * shots])
+        weights, matrix, (local, corner), tilts, offsets = np.split(state, ends)
         counts, log_light = np.isfinite(self.deviation).reshape(-1, 3), self.light(state)[0].reshape(-1, 3)
-        brightness, _ = self.model.brightness(state[: self.size], log_light)
+        brightness, _ = self.model.brightness(weights, log_light)
         return PairFit(
-            weights=state[: self.size],
-            matrix=matrix,
-            local=float(causes[0]),
-            corner=float(causes[1]),
-            tilts=causes[2 : 2 + 2 * self.shots].reshape(-1, 2),
-            offsets=np.append(0.0, causes[2 + 2 * self.shots :]),
+            weights=weights,
+            matrix=matrix.reshape(3, 3),
+            local=float(local),
+            corner=float(corner),
+            tilts=tilts.reshape(shots, 2),
+            offsets=np.append(0.0, offsets),
             covariance=self.covariance(state),
             log_light=log_light,
             residual=np.where(counts & self.is_open, self.cells.codes / 255 - brightness, np.nan),
-            headroom=self.headroom(matrix),
+            state=state,
+            headroom=self.headroom(matrix.reshape(3, 3)),
             outliers=float(1 - counts[self.counts(state)].mean()),
         )
 
-    def parts(self, others: Float64Array) -> tuple[Float64Array, Float64Array]:
-        """Return the matrix and the stops of the causes."""
-        return others[:9].reshape(3, 3), others[9:]
-
     def light(self, state: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return log2 of the light that the response takes, and its derivatives by the matrix and the causes."""
-        stops = self.causes @ self.parts(state[self.size :])[1]
+        stops = self.causes @ state[self.size + 9 :]
         behind = self.behind_matrix(state)
         relative = self.cells.light[:, None] / behind[..., None] / np.log(2)
         by_matrix = np.einsum("ncd,ce->nced", relative, np.eye(3)).reshape(-1, 9)
@@ -135,14 +127,15 @@ class _PairProblem(ResponseProblem):
 
     def behind_matrix(self, state: Float64Array) -> Float64Array:
         """Return the light behind the matrix, (N, 3)."""
-        return np.maximum(self.cells.light @ self.parts(state[self.size :])[0].T, FLOOR)
+        matrix = state[self.size : self.size + 9].reshape(3, 3)
+        return np.maximum(self.cells.light @ matrix.T, FLOOR)
 
     def prior(self, others: Float64Array) -> tuple[float, Float64Array, Float64Array]:
         """Return the cost of the causes, and of the distance of raw saturation from white."""
-        matrix, causes = self.parts(others)
+        matrix = others[:9].reshape(3, 3)
         off = (self.headroom(matrix) - self.expected[0]) / self.expected[1]
         slope = self.saturation / (np.log(2) * 3 * (matrix @ self.saturation))[:, None] / self.expected[1]
-        row = np.append(slope.ravel(), 0 * causes)
+        row = np.append(slope.ravel(), 0 * self.precision)
         precision = np.append(np.full(9, MATRIX_DEVIATION**-2), self.precision)
         cost = float(off**2 + precision @ others**2)
         return cost, row * off + precision * others, np.outer(row, row) + np.diag(precision)

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration.blocks import members_of_bins
 from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
 from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
 from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
+from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.calibration.uncertainty import CHANNEL_PART
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
@@ -22,8 +24,8 @@ from crfnet_core.types import BoolArray, Float64Array, Progress, show_progress
 #: Rounds of cells and fit: codes are averaged in the light of the last response.
 ROUNDS = 2
 
-#: Cells that a measurement needs; cells at white that show where it is.
-LEAST_CELLS, LEAST_WHITE = 300, 10
+#: Cells that a measurement needs, and each of its shots; cells at white that show where it is.
+LEAST_CELLS, LEAST_OF_SHOT, LEAST_WHITE = 300, 20, 10
 
 #: Least code that has to be seen, and the ones from which and up to which the shape counts as seen.
 LEAST_TOP, SEEN_TOP, SEEN_BOTTOM = 150.0, 235.0, 25.0
@@ -78,7 +80,8 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
-    cells, fit, basis = _measured(pairs)
+    saturation = float(np.median([pair.raw.balance.min() for pair in pairs]))  # balanced light of a white surface
+    cells, fit, basis = _measured(pairs, saturation)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
     low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
@@ -87,8 +90,8 @@ def measure_pairs(
     return PairCalibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=_uncertainty(cells, fit, curve, basis, _saturation(pairs)),
-        residual=_residual(fit.residual),
+        uncertainty=_uncertainty(cells, fit, curve, basis, saturation),
+        residual=rms_codes(fit.residual),
         metadata=pairs[0].metadata,
         points=_points(cells, fit, counted),
         counts=np.bincount(pairs[0].codes.ravel(), minlength=256).astype(np.float64),
@@ -102,14 +105,13 @@ def measure_pairs(
     )
 
 
-def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
+def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit, WhiteBasis]:
     """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
-    curve, fit, saturation = in_camera_mean(), None, _saturation(pairs)
+    curve, fit = in_camera_mean(), None
     for _ in range(ROUNDS):
         inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
         cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
-        if (count := int((cells.is_open.all(axis=1) & ~cells.is_saturated).sum())) < LEAST_CELLS:
-            raise CalibrationError("few_cells", path=pairs[0].path, count=count, least=LEAST_CELLS)
+        _check_counts(pairs, (cells.is_open.all(axis=1) & ~cells.is_saturated) @ cells.shot)
         top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
         if top < LEAST_TOP:
             raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
@@ -120,6 +122,15 @@ def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
     if basis == WhiteBasis.RAW_CLIP:
         fit = fit_pairs(cells, saturation, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
     return cells, fit, basis
+
+
+def _check_counts(pairs: Sequence[Pair], counts: Float64Array) -> None:
+    """Refuse pairs that show too few usable cells, given how many each does, or one of them that shows hardly any."""
+    if counts.sum() < LEAST_CELLS:
+        raise CalibrationError("few_cells", path=pairs[0].path, count=int(counts.sum()), least=LEAST_CELLS)
+    if counts.min() < LEAST_OF_SHOT:
+        path = pairs[int(counts.argmin())].path
+        raise CalibrationError("few_cells", path=path, count=int(counts.min()), least=LEAST_OF_SHOT)
 
 
 def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
@@ -164,8 +175,7 @@ def _between_channels(cells: Cells, fit: PairFit) -> float:
     counts = np.isfinite(fit.residual) & (cells.codes > FIRST_SHAPE_CODE) & (cells.codes < LAST_SHAPE_CODE)
     off = (fit.residual / np.maximum(slope, LEAST_RISE))[counts]
     groups = (np.floor(cells.codes / CODE_BIN) * 3 + np.arange(3))[counts]
-    parts = [off[groups == group] for group in np.unique(groups)]
-    medians = [np.median(part) for part in parts if len(part) >= LEAST_IN_BIN]
+    medians = [np.median(off[part]) for part in members_of_bins(groups, off) if len(part) >= LEAST_IN_BIN]
     return float(np.sqrt(np.mean(np.square(medians)))) if medians else 0.0
 
 
@@ -182,7 +192,7 @@ def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
     if np.ptp(offsets) > MOST_APART:
         first, last = shots[int(np.argmin(offsets))].path.name, shots[int(np.argmax(offsets))].path.name
         raise CalibrationError("shots_differ", first=first, last=last, stops=float(np.ptp(offsets)), most=MOST_APART)
-    residual = _residual(fit.residual)
+    residual = rms_codes(fit.residual)
     if residual > MOST_RESIDUAL or fit.outliers > MOST_OUTLIERS:
         raise CalibrationError("pair_unexplained", path=path, residual=residual, outliers=fit.outliers)
 
@@ -201,32 +211,25 @@ def _notices(pairs: Sequence[Pair], fit: PairFit, basis: WhiteBasis, low: float)
 
 def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[ShotReport, ...]:
     """Return a report of each pair."""
-    reports = []
-    for number, pair in enumerate(pairs):
-        own = cells.shot == number
-        residual, offset = _residual(fit.residual[own]), float(fit.offsets[number])
-        reports.append(
-            ShotReport(pair.path, pair.jpeg, pair.raw.iso, int(own.sum()), offset, residual, pair.place.correlation)
+    return tuple(
+        ShotReport(
+            path=pair.path,
+            jpeg=pair.jpeg,
+            iso=pair.raw.iso,
+            cells=int(own.sum()),
+            offset=float(offset),
+            residual=rms_codes(fit.residual[own]),
+            correlation=pair.place.correlation,
         )
-    return tuple(reports)
+        for pair, offset, own in zip(pairs, fit.offsets, cells.shot.T == 1, strict=True)
+    )
 
 
 def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
     """Return `PairCalibration.points`."""
     chroma = np.ptp(cells.codes, axis=1) / np.maximum(cells.codes.max(axis=1), 1)
-    per_cell = (cells.shot, np.hypot(*cells.place.T), chroma, cells.surroundings)
+    per_cell = (cells.shot.argmax(axis=1), np.hypot(*cells.place.T), chroma, cells.surroundings)
     columns = [fit.log_light, cells.codes / 255, fit.residual]
     columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
     columns.append(np.broadcast_to(np.arange(3), counted.shape))
     return np.stack([column[counted] for column in columns], axis=1)
-
-
-def _saturation(pairs: Sequence[Pair]) -> float:
-    """Return the balanced raw light at which a white surface saturates the first channel, of most shots."""
-    return float(np.median([pair.raw.balance.min() for pair in pairs]))
-
-
-def _residual(residual: Float64Array) -> float:
-    """Return the root mean square of residuals in 8-bit codes, NaN if there are none."""
-    known = residual[np.isfinite(residual)]
-    return float(255 * np.sqrt(np.mean(known**2))) if len(known) else float("nan")

@@ -54,10 +54,6 @@ class Registration:
         """Return a picture of the sensor, (H, W, ...), as the JPEG stands."""
         return np.rot90(picture[:, ::-1] if self.mirrored else picture, self.quarters)
 
-    def coordinates(self, x: Float64Array, y: Float64Array, shape: tuple[int, ...]) -> Float64Array:
-        """Return row and column in a turned raw picture of `shape` of points of the JPEG, in its half widths."""
-        return _coordinates(self.place, x, y, shape)
-
 
 def register(light: Float32Array, codes: Float32Array) -> Registration:
     """Return where a JPEG's pixels lie in raw light, both gray and of shape (H, W)."""
@@ -66,24 +62,38 @@ def register(light: Float32Array, codes: Float32Array) -> Registration:
     places = [np.r_[np.log([start, start]), np.zeros(5)] for start in STARTS]
     correlation = 0.0
     for width, blur in zip(WIDTHS, BLURS, strict=True):
-        raw, luma = (gaussian_filter(_resized(picture, width), blur) for picture in (logs, codes))
+        raw, luma = (gaussian_filter(_narrowed(picture, width), blur) for picture in (logs, codes))
         fits = [_fit(raw, luma, place) for place in places]
         place, correlation = max(fits, key=lambda fit: fit[1])
         places = [place]
     return replace(turn, place=places[0], correlation=correlation)
 
 
+def coordinates(place: Float64Array, x: Float64Array, y: Float64Array, shape: tuple[int, ...]) -> Float64Array:
+    """Return rows and columns in a turned raw picture of `shape`, (2, ...), of points of the JPEG.
+
+    The points are given in half widths of the JPEG from its center, `place` as in `Registration`.
+    """
+    log_x, log_y, angle, right, down, third, fifth = place
+    square = x * x + y * y
+    radial = 1 + third * square + fifth * square * square
+    x, y = x * radial * np.exp(log_x), y * radial * np.exp(log_y)
+    x, y = x * np.cos(angle) - y * np.sin(angle) + right, x * np.sin(angle) + y * np.cos(angle) + down
+    height, width = shape[:2]
+    return np.stack([(y * width + height - 1) / 2, (x * width + width - 1) / 2])
+
+
 def _turn(light: Float32Array, codes: Float32Array) -> Registration:
     """Return the turn of the sensor's picture that is most like the JPEG, without a place."""
-    seen = rank_image(_squeezed(codes))
 
-    def likeness(turn: Registration) -> float:
-        return float((rank_image(_squeezed(turn.turned(light))) * seen).sum())
+    def ranks(picture: Float32Array) -> Float64Array:
+        return rank_image(_resized(picture, SMALL).astype(np.float64))
 
+    seen = ranks(codes)
     is_wide = (light.shape[1] >= light.shape[0]) == (codes.shape[1] >= codes.shape[0])
     quarters = (0, 2) if is_wide else (1, 3)
     turns = [Registration(mirrored, turn, np.zeros(7), 0.0) for mirrored in (False, True) for turn in quarters]
-    return max(turns, key=likeness)
+    return max(turns, key=lambda turn: float((ranks(turn.turned(light)) * seen).sum()))
 
 
 def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Float64Array, float]:
@@ -94,7 +104,7 @@ def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Fl
     seen = luma.ravel()
 
     def sampled(place: Float64Array) -> Float32Array:
-        return np.asarray(map_coordinates(raw, _coordinates(place, x, y, raw.shape), order=1, mode="nearest"))
+        return np.asarray(map_coordinates(raw, coordinates(place, x, y, raw.shape), order=1, mode="nearest"))
 
     for _ in range(ROUNDS):
         at, values = _rising_curve(sampled(place), seen)
@@ -114,17 +124,6 @@ def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Fl
     return place, 0.0 if is_even else float(np.corrcoef(seen, explained)[0, 1])
 
 
-def _coordinates(place: Float64Array, x: Float64Array, y: Float64Array, shape: tuple[int, ...]) -> Float64Array:
-    """Return rows and columns of points, which are given in half widths of the JPEG from its center: (2, N)."""
-    log_x, log_y, angle, right, down, third, fifth = place
-    square = x * x + y * y
-    radial = 1 + third * square + fifth * square * square
-    x, y = x * radial * np.exp(log_x), y * radial * np.exp(log_y)
-    x, y = x * np.cos(angle) - y * np.sin(angle) + right, x * np.sin(angle) + y * np.cos(angle) + down
-    height, width = shape[:2]
-    return np.stack([(y * width + height - 1) / 2, (x * width + width - 1) / 2])
-
-
 def _rising_curve(light: Float32Array, luma: Float32Array) -> tuple[Float64Array, Float64Array]:
     """Return points of a rising curve from light to luma: running maxima of the medians in quantiles of light."""
     order = light.argsort()
@@ -134,13 +133,12 @@ def _rising_curve(light: Float32Array, luma: Float32Array) -> tuple[Float64Array
     return at + 1e-9 * np.arange(len(at)), values
 
 
-def _squeezed(picture: Float32Array) -> Float64Array:
-    """Return a picture at the size `SMALL`, whatever its shape."""
-    return np.asarray(Image.fromarray(np.ascontiguousarray(picture)).resize(SMALL, Image.Resampling.BOX), np.float64)
-
-
-def _resized(picture: Float32Array, width: int) -> Float32Array:
+def _narrowed(picture: Float32Array, width: int) -> Float32Array:
     """Return a picture of a width in pixels, or as it is if it is smaller."""
     width = min(width, picture.shape[1])
-    size = (width, max(1, round(picture.shape[0] * width / picture.shape[1])))
+    return _resized(picture, (width, max(1, round(picture.shape[0] * width / picture.shape[1]))))
+
+
+def _resized(picture: Float32Array, size: tuple[int, int]) -> Float32Array:
+    """Return a picture of a width and height in pixels."""
     return np.asarray(Image.fromarray(np.ascontiguousarray(picture)).resize(size, Image.Resampling.BOX))
