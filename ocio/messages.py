@@ -28,6 +28,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
     "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
+    "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",

@@ -24,8 +24,8 @@ from .exr import SAMPLE_TYPES, linear_header, write_exr
 from .frame_files import EncodedFrame, FirstFrame, FrameLoader, FrameSource, first_frame, frame_path
 from .frame_numbers import format_frames
 from .frame_pattern import FramePattern
-from .frames import FrameSequence
-from .light import PlateLight, check_finished
+from .frames import FrameSequence, identities
+from .light import PLATE, PlateLight, check_finished
 from .primaries import check_same_primaries, plate_primaries
 
 Name = TypeVar("Name")
@@ -77,9 +77,10 @@ def linearize_plates(
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
     The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
-    requires of coverage. A target that exists is whole, and is left alone unless `overwrite` is set: the same call
-    resumes an interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any
-    frame is written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
+    requires of coverage. Unless `overwrite` is set, targets that exist are left alone, so that the same call resumes an
+    interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any frame is
+    written if the output does not fit the depth, or a target exists that is not the whole linear frame of its plate in
+    the same light; at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if workers is not None and workers < 1:
@@ -88,12 +89,11 @@ def linearize_plates(
         sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
     light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
-    conversion = _Conversion(light, _scale(light, options), options, first)
-    skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    sizes = {targets[first.position]: (first.frame.header.width, first.frame.header.height)} if first else {}
-    check_finished(skipped, light, options.depth, sizes=sizes)
-    left_alone = set(skipped)
-    pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
+    plate_of = identities(sequence)
+    conversion = _Conversion(light, _scale(light, options), options, first, plate_of)
+    pending = {target: position for position, target in enumerate(targets)}
+    skipped = () if options.overwrite else tuple(target for target in targets if target.exists())
+    check_finished(((target, plate_of(pending.pop(target))) for target in skipped), light, options.depth)
     failures: dict[Path, CRFNetError] = {}
     elsewhere: list[Path] = []  # finished by another process meanwhile
     loaders = sequence.loaders([*pending.values()])
@@ -112,7 +112,7 @@ def linearize_plates(
             show_progress(progress, done, len(targets))
     if failures:
         raise _failure(failures, targets, sequence)
-    check_finished(elsewhere, light, options.depth)
+    check_finished(((target, plate_of(pending[target])) for target in elsewhere), light, options.depth)
     written = tuple(target for target in pending if target not in elsewhere)
     return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
 
@@ -125,12 +125,13 @@ class _Conversion:
     scale: float
     options: PlateOptions
     first: FirstFrame | None
+    plate_of: Callable[[int], str]
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
         frame = self._read(position, path, load)
         pixels = self._linear_pixels(frame)
-        attributes, depth = self.light.attributes, self.options.depth
+        attributes, depth = {**self.light.attributes, PLATE: self.plate_of(position)}, self.options.depth
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
