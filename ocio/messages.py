@@ -10,6 +10,7 @@ SENTENCES: Mapping[str, str] = {
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
     " {line} (leave out its filter if both fields show the same moment)",
+    "movie_too_large": "{path}: its frames have more than {megapixels} megapixels; scale it, or extract them: {line}",
     "movie_undecodable": "{path}: cannot be decoded ({reason}); copy it again, or extract its frames: {line}",
     "no_video": "{path}: holds no video that FFmpeg decodes; give a movie with a picture",
     "pyav_missing": "{path}: is a movie, which needs PyAV: pip install 'crfnet[video]', or extract its frames: {line}",

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
 from crfnet_core.photograph.photo import UPRIGHT, Turn
@@ -142,12 +141,9 @@ def check_progressive(movie: MovieStream) -> None:
 def read_stream(path: Path) -> MovieStream:
     """Return the description of a movie, read to its end, or refuse it; only the first frame is decoded."""
     with opened(path) as (container, stream):
-        context = stream.codec_context
-        if context.width * context.height > MAX_PIXELS:
-            raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
         if dolby_vision_profile(stream) == IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
-        codes = _color_codes(context)  # decoding overwrites them
+        codes = _color_codes(stream.codec_context)  # decoding overwrites them
         packets, frame, problems = _survey(container, stream)
         is_cut = any(words in problem for words in CUT for problem in problems) or has_cut_riff(path)
         if problems and not is_cut and container.format.name == MATROSKA:  # it passes over frames that it cannot find

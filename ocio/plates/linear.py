@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, check_target
+from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
 
@@ -30,7 +31,8 @@ from .primaries import check_same_primaries, plate_primaries
 
 Name = TypeVar("Name")
 
-#: Frames linearized at a time by default; each needs about 20 bytes of memory per pixel.
+#: Frames linearized at a time by default, fewer if they have more than `MAX_PIXELS` together: each needs about 20 bytes
+#: of memory per pixel.
 MAX_WORKERS = 8
 
 #: Rows linearized at a time, which keeps the memory for intermediate values small.
@@ -78,9 +80,9 @@ def linearize_plates(
 
     The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
     requires of coverage. Unless `overwrite` is set, targets that exist are left alone, so that the same call resumes an
-    interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any frame is
-    written if the output does not fit the depth, or a target exists that is not the whole linear frame of its plate in
-    the same light; at the end if frames failed.
+    interrupted one. `workers` frames, by default at most one a core, are in memory. Raise a CRFNetError before any
+    frame is written if the output does not fit the depth, or a target exists that is not the whole linear frame of its
+    plate in the same light; at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if workers is not None and workers < 1:
@@ -102,7 +104,7 @@ def linearize_plates(
         for (target, position), load in zip(pending.items(), loaders, strict=True)
     )
     show_progress(progress, len(skipped), len(targets))
-    with closing(finished(jobs, workers or min(cores(), MAX_WORKERS))) as ended:
+    with closing(finished(jobs, workers or _workers(first))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
             if problem := future.exception():
                 if options.overwrite or not target.exists():
@@ -173,6 +175,12 @@ class _Conversion:
                 linear[rows, :, 3:] = alpha
             linear[rows, :, :3] = values
         return linear
+
+
+def _workers(first: FirstFrame | None) -> int:
+    """Return how many frames of the size of the first are linearized at a time."""
+    pixels = first.frame.samples[..., 0].size if first else 1
+    return max(1, min(cores(), MAX_WORKERS, MAX_PIXELS // pixels))
 
 
 def finished(

@@ -243,7 +243,7 @@ def test_a_pipe_is_not_opened(tmp_path):
         os.close(writer)
 
 
-def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
+def test_damaged_movies_and_sound_are_refused(movie, tmp_path):
     (tmp_path / "cut short.mp4").write_bytes(movie.read_bytes()[:2000])
     assert refusal(tmp_path / "cut short.mp4") == "movie_undecodable"
     with av.open(str(tmp_path / "a.wav"), "w") as container:
@@ -253,8 +253,19 @@ def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
         sound.rate = 8000
         container.mux(stream.encode(sound))
     assert refusal(tmp_path / "a.wav") == "no_video"
-    monkeypatch.setattr("crfnet.movies.stream.MAX_PIXELS", 100)
-    assert refusal(movie) == "plate_too_large"
+
+
+@pytest.mark.parametrize(
+    ("name", "codec", "form"),
+    [("a.mp4", "libx264", "yuv420p"), ("a.mov", "png", "rgb24"), ("a.mkv", "ffv1", "yuv420p")],
+)
+def test_a_movie_of_too_large_frames_is_refused_before_one_is_decoded(tmp_path, monkeypatch, name, codec, form):
+    """FFmpeg itself decodes some to learn their form."""
+    path = write_movie(tmp_path / name, codec=codec, form=form)
+    read_stream(path)
+    monkeypatch.setattr("crfnet.movies.library.MOST_PIXELS", 128 * 96 - 1)
+    monkeypatch.setattr("crfnet.movies.stream.decoded_packet", None)
+    assert refusal(path) == "movie_too_large"
 
 
 def test_opening_a_movie_of_many_empty_boxes_ends(movie, monkeypatch):
