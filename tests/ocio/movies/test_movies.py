@@ -10,7 +10,7 @@ from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
 from crfnet.movies.stream import read_stream
 from tests.helpers.images import write_image
-from tests.helpers.movies import pictures, write_movie
+from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -31,6 +31,10 @@ MOVIES = {
     "exif in frames": ("a.mov", 6, {"codec": "tiff", "form": "rgb24"}),  # of whose side data PyAV knows nothing
     "uncompressed": ("a.mov", 6, {"codec": "rawvideo", "form": "uyvy422"}),
     "odd size": ("a.mkv", 6, {"codec": "ffv1", "size": (131, 97)}),
+    "y4m": ("a.y4m", 6, {"codec": "rawvideo"}),
+    "ogg": ("a.ogg", 6, {"codec": "libvpx"}),
+    "bare h264": ("a.h264", 24, {"options": B_FRAMES}),
+    "bare hevc": ("a.265", 24, {"codec": "libx265", "options": {"x265-params": LOSS}}),
     "transport stream": ("a.ts", 24, {"options": B_FRAMES}),
     "wrapped clock": ("a.ts", 24, {"muxer": {"output_ts_offset": str((2**33 - 30000) / 90000)}}),
     "negative times": ("a.mkv", 24, {"times": range(-12, 12)}),
@@ -73,6 +77,13 @@ def test_all_frames_are_there_in_order(tmp_path, name):
     assert frames.movie.bit_depth == {"prores 4444": 12, "prores": 10}.get(name, 10 if "10 bits" in name else 8)
     picture = next(pictures(1, options.get("size", (128, 96)))) / 255
     assert np.abs(next(frames.loaders([0]))().samples / WHITE - picture).mean() < 0.02
+
+
+def test_theora_is_read(movie, tmp_path):
+    """PyAV does not write it."""
+    run_ffmpeg("-i", movie, "-c:v", "libtheora", "-q:v", 10, tmp_path / "a.ogv")
+    assert is_movie(tmp_path / "a.ogv")
+    assert bars(MovieFrames.find(tmp_path / "a.ogv")) == list(range(1, 25))
 
 
 @pytest.mark.parametrize("name", ["h264", "hevc 10 bits", "transport stream"])
