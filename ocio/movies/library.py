@@ -58,16 +58,6 @@ def is_movie(path: Path) -> bool:
     )
 
 
-def has_cut_riff(path: Path) -> bool:
-    """Return whether a file ends before one of its RIFF chunks, of which an AVI file has one or more, does."""
-    end, size = 0, path.stat().st_size
-    with path.open("rb") as file:
-        while (head := file.read(8)).startswith(b"RIFF"):
-            end += 8 + int.from_bytes(head[4:], "little")
-            file.seek(end)
-    return end > size
-
-
 def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
     pattern, filtered = path.with_name(path.stem.replace("%", "_") + ".%04d.png"), ["-vf", filters] if filters else []

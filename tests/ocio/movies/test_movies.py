@@ -15,6 +15,7 @@ from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 B_FRAMES = {"preset": "fast", "g": "8", "bf": "3"}
+INTRA = {"g": "1", "qmin": "1", "qmax": "1"}
 LOSS = "log-level=error:crf=2"
 
 #: File, frames and how it is written: codecs and containers that users have, and clocks that trip decoders.
@@ -142,6 +143,23 @@ def test_damage_fails_up_to_the_next_key_frame_and_the_others_keep_their_numbers
     assert bars(MovieFrames.find(path)) == [None if number in lost else number for number in range(1, 25)]
 
 
+@pytest.mark.parametrize(
+    ("codec", "options", "last"),
+    [("ffv1", {"g": "1"}, 11), ("mpeg4", {"g": "8", "bf": "0"}, 16), ("mpeg4", {"g": "8", "bf": "2"}, 24)],
+)
+def test_an_avi_frame_whose_head_is_damaged_fails_and_the_others_keep_their_numbers(tmp_path, codec, options, last):
+    """With frames that are shown later than others behind them, FFmpeg leaves out more than the one it does not see."""
+    path = write_movie(tmp_path / "a.avi", 24, codec=codec, options={"qmin": "1", "qmax": "1", **options})
+    with av.open(str(path)) as container:
+        place = [packet.pos for packet in container.demux(video=0) if packet.size][10]
+    content = bytearray(path.read_bytes())
+    content[place - 8 : place] = bytes(8)
+    path.write_bytes(content)
+    shown = bars(MovieFrames.find(path))
+    assert shown[last:] == [*range(last + 1, 25)]
+    assert (shown[:8], shown[10:last], len(shown)) == ([*range(1, 9)], [None] * (last - 10), 24)
+
+
 def test_a_damaged_first_frame_counts(tmp_path):
     path = damage(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le"), 1)
     assert bars(MovieFrames.find(path)) == [None, 2, 3, 4, 5, 6]
@@ -153,6 +171,10 @@ def test_a_damaged_first_frame_counts(tmp_path):
         ("a.mkv", {"codec": "ffv1"}),
         ("a.avi", {"codec": "ffvhuff", "form": "rgb24"}),
         ("a.mov", {"codec": "qtrle", "form": "rgb24", "muxer": {"movflags": "faststart"}}),
+        ("a.wmv", {"codec": "wmv2", "options": INTRA}),
+        ("a.flv", {"codec": "flv", "options": INTRA}),
+        ("a.mxf", {"codec": "mpeg2video", "form": "yuv422p", "options": INTRA}),
+        ("a.ogv", {"codec": "libvpx", "options": {"g": "1", "crf": "4", "b": "9M"}}),
     ],
 )
 def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, name, options):
