@@ -55,7 +55,8 @@ def write_derived_config(
     the LUTs.
     """
     check_config_folder(folder)
-    if base.path is not None and folder.is_dir() and folder.samefile(base.path.parent):
+    homes = [path.parent for path in (base.path, base.path and base.path.resolve()) if path]
+    if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
     spaces, common = _new_spaces(base, looks, others or {})
@@ -103,6 +104,7 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
 def _relocated(base: ConfigSource) -> OCIO.Config:
     """Return a copy of a config that finds the files of its base, and then those of its new folder."""
     config = copy.deepcopy(base.config)
+    config.setEnvironmentMode(base.config.getEnvironmentMode())  # which a copy has lost
     folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
     config.clearSearchPaths()
     if base.path is not None:
@@ -119,7 +121,7 @@ def _absolute_paths(folder: str, home: Path) -> list[str]:
         raise ConfigError("base_folder_is_variable", path=home)
     if folder.startswith(("$", "%")):
         return [f"{home}/{folder}", folder]
-    return [str(home / folder)]
+    return [os.path.normpath(home / folder)]  # as OpenColorIO does: "link/.." is not where the link leads
 
 
 def _has_file(base: ConfigSource, name: str) -> bool:

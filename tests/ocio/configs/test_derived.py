@@ -1,5 +1,7 @@
 """Plates in a copy of somebody's config: the base stays, and everything of it means the same in the copy."""
 
+import re
+
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
@@ -105,6 +107,30 @@ class TestBase:
         studio.write_text(config.serialize())
         result = converted(loaded(add(studio, tmp_path / "new", small_look).path), "film", "scene_linear", CODES)
         np.testing.assert_array_equal(result, converted(loaded(studio), "film", "scene_linear", CODES))
+
+    def test_variables_that_a_config_does_not_declare_count_as_before(self, studio, small_look, tmp_path, monkeypatch):
+        monkeypatch.setenv("SHOT", str(tmp_path))
+        write_lut(tmp_path / "film.spi1d", THIRD_LUT)
+        text = re.sub(r"environment:\n( .*\n)+", "", studio.read_text()).replace("$SHOW/luts", "luts")
+        studio.write_text(text.replace("- luts", "- $SHOT", 1))
+        result = loaded(add(studio, tmp_path / "new", small_look).path)
+        assert_same(conversions(result), conversions(loaded(studio)))
+        np.testing.assert_allclose(converted(result, "film", "scene_linear", CODES), THIRD_LUT.apply(CODES), atol=1e-6)
+
+    @pytest.mark.parametrize("path", ["luts", "../link/../luts"])
+    def test_a_link_is_a_base_of_its_own(self, studio, small_look, tmp_path, path):
+        """OpenColorIO looks for files next to it, and takes ".." out of names."""
+        studio.write_text(studio.read_text().replace("- luts", f"- {path}"))
+        (tmp_path / "show" / "luts").mkdir(parents=True)
+        (tmp_path / "luts").mkdir()
+        for folder in (tmp_path / "show" / "luts", tmp_path / "luts"):
+            write_lut(folder / "film.spi1d", THIRD_LUT)
+        (tmp_path / "link").symlink_to(studio.parent / "luts")
+        (tmp_path / "show" / "config.ocio").symlink_to(studio)
+        result = loaded(add(tmp_path / "show" / "config.ocio", tmp_path / "new", small_look).path)
+        assert_same(conversions(result), conversions(loaded(tmp_path / "show" / "config.ocio")))
+        with refused(ConfigError, "base_would_change"):
+            add(tmp_path / "show" / "config.ocio", studio.parent, small_look)
 
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance):
         """The plate's LUT would be called film.spi1d, like one of the base."""
