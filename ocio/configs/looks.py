@@ -16,7 +16,7 @@ from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
 from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
-from .file_rules import MOST_PATTERNS, plate_pattern
+from .file_rules import MOST_PATTERNS, plate_pattern, sequence_pattern
 from .files import load_config, plate_exposure
 from .plate_color_space import PlateColorSpace
 from .reference_space import LINEAR_NAMES
@@ -59,12 +59,12 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
     folder = lut_file.parent
     if document:
         names = [MOVIE_FRAME.sub("", photo["name"]) for photo in document["photographs"]]
-        photo = Path(names[0])
+        photo, frames = Path(names[0]), sequence_pattern(names)
         files = OutputFiles.named(folder, [photo])
         files = replace(files, linear=tuple(folder / name for name in document["files"]["linear"]))
         space = replace(
-            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document)),
-            file_patterns=tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
+            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document), file_pattern=frames),
+            file_patterns=(frames,) if frames else tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
             primaries=_primaries(document),
             linear_primaries=_linear_primaries(document),
         )

@@ -62,9 +62,7 @@ class PlateColorSpace:
             raise ConfigError("lut_name_is_variable", name=self.name, lut_file=self.lut_file)
 
     @classmethod
-    def from_outputs(
-        cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
-    ) -> Self:
+    def from_outputs(cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str = "") -> Self:
         """Return the color space of a photograph, for a config next to the LUTs that an estimate writes.
 
         `file_pattern` is by default the photograph's name, where a frame number at the end (shot.0001.jpg) stands for
@@ -77,7 +75,7 @@ class PlateColorSpace:
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_patterns=(file_pattern or plate_pattern(photo.name),),
             exposure=exposure,
-            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear]),
+            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear], file_pattern),
         )
 
 

@@ -132,14 +132,15 @@ class TestBase:
         with refused(ConfigError, "base_would_change"):
             add(tmp_path / "show" / "config.ocio", studio.parent, small_look)
 
-    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance):
-        """The plate's LUT would be called film.spi1d, like one of the base."""
-        look = write_look(tmp_path / "look", ["film.jpg"])
+    @pytest.mark.parametrize("name", ["film", "FILM"])
+    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
+        """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
+        look = write_look(tmp_path / "look", [f"{name}.jpg"])
         done = add(studio, tmp_path / "new", look)
-        assert listed(tmp_path / "new") == ["config.ocio", "film (look).spi1d"]
+        assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
         result = loaded(done.path)
         assert_same(conversions(result), conversions(loaded(studio)))
-        light = converted(result, "CRF film", "scene_linear", CODES)
+        light = converted(result, f"CRF {name}", "scene_linear", CODES)
         np.testing.assert_allclose(light, LUT.apply(CODES), atol=tolerance.plate)
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
@@ -277,6 +278,14 @@ class TestRules:
         linear = result.getColorSpace(interop_id).getName()
         for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr"):
             assert space_of(result, path) == linear
+
+    def test_a_sequence_without_a_dot_has_them_too(self, tmp_path):
+        look = write_look(tmp_path / "look", ["skyline_0001.png", "skyline_0090.png"], interop_id="lin_ap1_scene")
+        result = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert [space_of(result, f"skyline_0050.{suffix}") for suffix in ("png", "exr")] == [
+            "CRF skyline_0001",
+            "ACEScg",
+        ]
 
     def test_a_movie_has_rules_for_its_file_and_its_linear_frames(self, tmp_path):
         look = write_look(tmp_path / "look", ["clip.mp4 frame 1", "clip.mp4 frame 9"], interop_id="lin_ap1_scene")
