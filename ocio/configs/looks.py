@@ -1,6 +1,5 @@
 """The files that an estimate wrote for a plate, read back: its LUT and its color space."""
 
-import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -93,16 +92,16 @@ def _document(path: Path) -> dict[str, Any] | None:
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         float(document["exposure"]["stops"])
         str(document["output_space"]["interop_id"])
-        _primaries(document)
+        _primaries(document).to_xyz()
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
-    except (OSError, KeyError, OverflowError, TypeError, ValueError):
+    except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
     return document if is_named and document["photographs"] else None
 
 
 def _is_file_name(name: str) -> bool:
-    """Return whether a text is the name of a file, without a folder; ValueError if it has a surrogate of no byte."""
-    return "\0" not in name and 0 < len(os.fsencode(name)) < 250 and Path(name).name == name
+    """Return whether a text is the name of a file, without a folder; ValueError if it has a surrogate."""
+    return "\0" not in name and 0 < len(name.encode()) < 250 and Path(name).name == name
 
 
 def _exposure(folder: Path, document: dict[str, Any]) -> float:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
 from typing import Self
 
-import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
@@ -32,6 +31,10 @@ CATEGORIES = ["file-io"]
 USUAL_LINEAR_FILE = "crfnet_linear.exr"
 
 
+#: The largest exposure up or down, in stops: powers of two that single precision holds.
+MOST_STOPS = 100
+
+
 @dataclass(frozen=True)
 class PlateColorSpace:
     """The color space of a plate: its camera's inverse response, an exposure, and its primaries.
@@ -54,7 +57,7 @@ class PlateColorSpace:
         lut_file = PureWindowsPath(self.lut_file)
         if not self.name.strip():
             raise ConfigError("nameless_color_space")
-        if not np.isfinite(self.exposure):
+        if not abs(self.exposure) <= MOST_STOPS:  # also NaN
             raise ConfigError("exposure_not_finite", name=self.name, exposure=self.exposure)
         if not lut_file.name or lut_file.anchor or ".." in lut_file.parts:
             raise ConfigError("lut_outside_config_folder", name=self.name, lut_file=self.lut_file)
