@@ -60,13 +60,14 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found integers up to {largest}, but the LUT ends at {last:g}: divide code values by the largest code,"
+    "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code,"
     " such as 255",
     "lut_domain": "a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}",
     "lut_domain_short": "the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1",
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
+    "lut_of_no_numbers": "a LUT needs numbers, found {kind}",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
     " its decimals have points",
