@@ -108,13 +108,13 @@ def test_frames_are_chosen_and_missing_ones_named(movie):
     assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
 
 
-def damage(path, number, start=0.0, end=1.0):
-    """Write zeros over a part of a movie's packet, counted from 1 in the order of the file."""
+def damage(path, number, start=0.0, end=1.0, *, before=0):
+    """Write zeros over a part of a movie's packet, counted from 1 in the order of the file, and bytes before it."""
     with av.open(str(path)) as container:
         packet = [packet for packet in container.demux(video=0) if packet.size][number - 1]
     content = bytearray(path.read_bytes())
     begin, end = (packet.pos + int(packet.size * part) for part in (start, end))
-    content[begin:end] = bytes(end - begin)
+    content[begin - before : end] = bytes(end - begin + before)
     path.write_bytes(content)
     return path
 
@@ -150,12 +150,7 @@ def test_damage_fails_up_to_the_next_key_frame_and_the_others_keep_their_numbers
 def test_an_avi_frame_whose_head_is_damaged_fails_and_the_others_keep_their_numbers(tmp_path, codec, options, last):
     """With frames that are shown later than others behind them, FFmpeg leaves out more than the one it does not see."""
     path = write_movie(tmp_path / "a.avi", 24, codec=codec, options={"qmin": "1", "qmax": "1", **options})
-    with av.open(str(path)) as container:
-        place = [packet.pos for packet in container.demux(video=0) if packet.size][10]
-    content = bytearray(path.read_bytes())
-    content[place - 8 : place] = bytes(8)
-    path.write_bytes(content)
-    shown = bars(MovieFrames.find(path))
+    shown = bars(MovieFrames.find(damage(path, 11, end=0, before=8)))
     assert shown[last:] == [*range(last + 1, 25)]
     assert (shown[:8], shown[10:last], len(shown)) == ([*range(1, 9)], [None] * (last - 10), 24)
 
@@ -189,12 +184,7 @@ def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, na
 
 
 def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
-    path = write_movie(tmp_path / "a.mkv", codec="ffv1")
-    content = bytearray(path.read_bytes())
-    with av.open(str(path)) as container:
-        place = [packet.pos for packet in container.demux(video=0) if packet.size][3]
-    content[place - 20 : place + 20] = bytes(40)
-    path.write_bytes(content)
+    path = damage(write_movie(tmp_path / "a.mkv", codec="ffv1"), 4, end=0.01, before=20)
     assert refusal(path) == "movie_undecodable"
 
 
