@@ -4,6 +4,7 @@ Sources: AVI and OpenDML; Advanced Systems Format (3.2); Adobe Flash Video (E.5)
 """
 
 import os
+import re
 import struct
 from pathlib import Path
 from typing import BinaryIO
@@ -11,13 +12,13 @@ from typing import BinaryIO
 #: Bytes in which a header, or the last page of an Ogg file, begins.
 _REACH = 2**16
 
-#: Windows Media: the key of the file's properties, the places in them of its size and of the flag that it is still
-#: being written. Flash: the name and the type of the size.
-_WINDOWS, _WINDOWS_SIZE, _WINDOWS_FLAG = bytes.fromhex("a1dcab8c47a9cf118ee400c00c205365"), 40, 88
-_FLASH = b"\0\x08filesize\0"
-
-#: MXF: how the key of the first partition begins, its size, and the place of the last partition's address behind it.
-_MXF, _MXF_KEY, _MXF_ADDRESS = b"\x06\x0e\x2b\x34\x02\x05\x01\x01", 16, 24
+#: The field of a header that holds the file's size (Windows Media, Flash) or where its last part begins (MXF), behind
+#: its key and other fields, and its type for `struct`.
+_FIELDS = (
+    (re.compile(rb"\xa1\xdc\xab\x8c\x47\xa9\xcf\x11\x8e\xe4\x00\xc0\x0c\x20\x53\x65.{24}(.{8})", re.DOTALL), "<Q"),
+    (re.compile(rb"\AFLV.*\0\x08filesize\0(.{8})", re.DOTALL), ">d"),
+    (re.compile(rb"\A\x06\x0e\x2b\x34\x02\x05\x01\x01.{8}(?:\x83.{3}|\x87.{7}|.).{24}(.{8})", re.DOTALL), ">Q"),
+)
 
 
 def is_cut_short(path: Path) -> bool:
@@ -27,7 +28,10 @@ def is_cut_short(path: Path) -> bool:
         size = file.seek(0, os.SEEK_END)
         if head.startswith(b"OggS"):
             return not _has_last_page(file, size)
-        return _end_of_riff(file) > size if head.startswith(b"RIFF") else _stated_end(head) > size
+        if head.startswith(b"RIFF"):
+            return _end_of_riff(file) > size
+    fields = ((pattern.search(head), form) for pattern, form in _FIELDS)
+    return any(field and struct.unpack(form, field[1])[0] > size for field, form in fields)
 
 
 def _has_last_page(file: BinaryIO, size: int) -> bool:
@@ -46,16 +50,3 @@ def _end_of_riff(file: BinaryIO) -> int:
         end += 8 + int.from_bytes(head[4:], "little")
         file.seek(end)
     return end
-
-
-def _stated_end(head: bytes) -> float:
-    """Return the size of Windows Media or Flash, or where the last partition of MXF begins; 0 if it is not stated."""
-    if (at := head.find(_WINDOWS)) >= 0:
-        is_final = not int.from_bytes(head[at + _WINDOWS_FLAG : at + _WINDOWS_FLAG + 1]) & 1
-        return is_final * int.from_bytes(head[at + _WINDOWS_SIZE : at + _WINDOWS_SIZE + 8], "little")
-    if head.startswith(b"FLV") and (at := head.find(_FLASH)) >= 0:
-        return float(struct.unpack_from(">d", head + bytes(8), at + len(_FLASH))[0])
-    if head.startswith(_MXF):
-        at = _MXF_KEY + 1 + head[_MXF_KEY] % 128 + _MXF_ADDRESS  # behind the bytes of a length, by their number
-        return int.from_bytes(head[at : at + 8])
-    return 0

@@ -38,13 +38,6 @@ def test_the_pixels_are_the_entries_of_the_lut(lut, tmp_path, depth, sample):
     assert header["compression"] == OpenEXR.ZIPS_COMPRESSION
 
 
-def test_the_header_names_the_space_of_the_light(lut, tmp_path):
-    path = linearized(lut, tmp_path, np.zeros((4, 5, 3), dtype=np.uint8), "--output-space", "ACEScg")
-    header, _ = read_reference(path)
-    assert header["colorInteropID"] == "lin_ap1_scene"
-    assert header["dataWindow"][1].tolist() == [4, 3]
-
-
 def test_alpha_of_whole_numbers_is_refused(tmp_path):
     """It holds the numbers of objects, not coverage."""
     picture = {"RGB": np.full((4, 5, 3), 0.5, np.float32), "A": np.ones((4, 5), np.uint32)}
