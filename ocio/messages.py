@@ -10,6 +10,7 @@ SENTENCES: Mapping[str, str] = {
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
     " {line} (leave out its filter if both fields show the same moment)",
+    "movie_too_large": "{path}: its frames have more than {megapixels} megapixels; scale it, or extract them: {line}",
     "movie_undecodable": "{path}: cannot be decoded ({reason}); copy it again, or extract its frames: {line}",
     "no_video": "{path}: holds no video that FFmpeg decodes; give a movie with a picture",
     "pyav_missing": "{path}: is a movie, which needs PyAV: pip install 'crfnet[video]', or extract its frames: {line}",
@@ -28,6 +29,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
     "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
+    "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
@@ -58,13 +60,14 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found integers up to {largest}, but the LUT ends at {last:g}: divide code values by the largest code,"
+    "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code,"
     " such as 255",
     "lut_domain": "a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}",
     "lut_domain_short": "the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1",
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
+    "lut_of_no_numbers": "a LUT needs numbers, found {kind}",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
     " its decimals have points",

@@ -26,6 +26,9 @@ LEAST_SLOPE = 1e-4
 #: Largest brightness that counts as one; super-whites reach 1.1, and larger numbers are codes that nobody divided.
 MOST_BRIGHTNESS = 2.0
 
+#: Kinds of NumPy's numbers: real ones, integers and truth values.
+NUMBERS = "fiub"
+
 #: Values that are interpolated at a time, because they fit into a core's cache; arrays of more are interpolated by
 #: `_PiecewiseLinear._evaluated`.
 BLOCK = 32768
@@ -177,8 +180,8 @@ class ResponseCurve(EqualByFields):
         Raises
         ------
         CurveError
-            If integers above 1, or other numbers above `MOST_BRIGHTNESS`, are given: code values, which have to be
-            divided by the largest code.
+            If integers above 1, arrays of unsigned integers, or numbers above `MOST_BRIGHTNESS` are given: code values,
+            which have to be divided by the largest code.
         """
         return self._inverse(brightness)
 
@@ -191,6 +194,11 @@ class ResponseCurve(EqualByFields):
     def _inverse(self) -> _PiecewiseLinear:
         """The inverse response as a function of arrays."""
         return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
+
+
+def is_codes(values: NDArray[Any]) -> bool:
+    """Return whether an array has the type of code values, even if all of them are 0 or 1, as in a black frame."""
+    return values.dtype.kind == "u" and values.dtype.itemsize <= 2 and values.ndim > 0
 
 
 class _PiecewiseLinear:
@@ -206,9 +214,11 @@ class _PiecewiseLinear:
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
         values = np.asarray(arguments)
+        if values.dtype.kind not in NUMBERS:
+            raise CurveError("not_numbers", kind=values.dtype)
         if self._most < np.inf and (largest := float(np.fmax.reduce(values, axis=None, initial=0))) > self._most:
             raise CurveError("brightness_codes", found=largest)
-        if values.dtype.kind in "iu" and values.size and values.max() > 1:
+        if values.dtype.kind in "iu" and values.size and (is_codes(values) or values.max() > 1):
             raise CurveError("brightness_codes", found=int(values.max()))
         kind = np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64
         if values.size <= BLOCK:

@@ -8,6 +8,7 @@ next to the new config. Nothing of the base is changed, nothing is deleted.
 import copy
 import os
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -55,7 +56,8 @@ def write_derived_config(
     the LUTs.
     """
     check_config_folder(folder)
-    if base.path is not None and folder.is_dir() and folder.samefile(base.path.parent):
+    homes = [path.parent for path in (base.path, base.path and base.path.resolve()) if path]
+    if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
     spaces, common = _new_spaces(base, looks, others or {})
@@ -94,7 +96,8 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
     hidden = map(str.strip, config.getInactiveColorSpaces().split(","))
     taken = {name.casefold() for name in (*names, *hidden, *config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL))}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
-    lut_file = next(name for name in stems if name not in lut_files and not _has_file(base, name))
+    used = {name.casefold() for name in lut_files} | _names_on_path(base)  # as macOS and Windows compare them
+    lut_file = next(name for name in stems if name.casefold() not in used)
     free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
     name = next(name for name in free if config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file)
@@ -103,6 +106,7 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
 def _relocated(base: ConfigSource) -> OCIO.Config:
     """Return a copy of a config that finds the files of its base, and then those of its new folder."""
     config = copy.deepcopy(base.config)
+    config.setEnvironmentMode(base.config.getEnvironmentMode())  # which a copy has lost
     folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
     config.clearSearchPaths()
     if base.path is not None:
@@ -119,15 +123,16 @@ def _absolute_paths(folder: str, home: Path) -> list[str]:
         raise ConfigError("base_folder_is_variable", path=home)
     if folder.startswith(("$", "%")):
         return [f"{home}/{folder}", folder]
-    return [str(home / folder)]
+    return [os.path.normpath(home / folder)]  # as OpenColorIO does: "link/.." is not where the link leads
 
 
-def _has_file(base: ConfigSource, name: str) -> bool:
-    """Return whether a config finds a file of this name on its search path."""
+def _names_on_path(base: ConfigSource) -> set[str]:
+    """Return the names of all files in the folders of a config's search path, without case."""
+    names, context = set[str](), base.config.getCurrentContext()
     if base.path is None:
-        return False
-    try:
-        base.config.getCurrentContext().resolveFileLocation(name)
-    except (OCIO.Exception, OCIO.ExceptionMissingFile):
-        return False
-    return True
+        return names
+    for folder in [*context.getSearchPaths()] or ["."]:
+        with suppress(OSError):
+            files = (base.path.parent / context.resolveStringVar(folder)).iterdir()
+            names |= {file.name.casefold() for file in files}
+    return names

@@ -25,8 +25,9 @@ COUNTER_NAMES = (
 #: The most patterns of one rule: OpenColorIO's regular expressions fail with 4000.
 MOST_PATTERNS = 100
 
-#: Frame numbers at the end of a name: shot.0001.
+#: Frame numbers at the end of a name: shot.0001. And the names of several frames, up to the number and behind it.
 FRAME_NUMBER = re.compile(r"\.\d{2,}$")
+FRAME = re.compile(r"(.*?)(?:(?<=\.)[0-9]+|[0-9]{4,})(\.[^.]*)")
 
 
 def plate_pattern(name: str) -> str:
@@ -36,14 +37,25 @@ def plate_pattern(name: str) -> str:
     return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
 
 
-def linear_patterns(stem: str, names: Sequence[str] = ()) -> tuple[str, ...]:
+def sequence_pattern(names: Sequence[str]) -> str:
+    """Return the pattern of file names that differ in the number of a frame alone, such as shot_#.jpg; else nothing.
+
+    The number stands at the end, behind a dot or with four digits at least: sh010.jpg and sh020.jpg are two shots.
+    """
+    frames = [FRAME.fullmatch(name.replace("#", "?")) for name in names]
+    patterns = {f"{frame[1]}#{frame[2]}" if frame else "" for frame in frames}
+    return patterns.pop() if len(patterns) == 1 < len(set(names)) else ""
+
+
+def linear_patterns(stem: str, names: Sequence[str] = (), plates: str = "") -> tuple[str, ...]:
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
-    `stem` is the stem of the plate's files, for example "clip" or "shot.0001". One pattern stands for more than
-    `MOST_PATTERNS` names.
+    `stem` is the stem of the plate's files, for example "clip" or "shot.0001"; `plates` is the pattern of a sequence.
+    One pattern stands for more than `MOST_PATTERNS` names.
     """
     named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
-    return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr"]))
+    frames = [plates.rpartition(".")[0] + ".exr"] if "#" in plates else []
+    return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr", *frames]))
 
 
 def is_counter_name(name: str) -> bool:

@@ -107,7 +107,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
     OCIO.ClearAllCaches()
     try:
         with _whole_configs(), atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
-            temporary.write_text(config.serialize(), encoding="utf-8", newline="\n")
+            temporary.write_text(_serialized(config), encoding="utf-8", newline="\n")
             loaded = OCIO.Config.CreateFromFile(str(temporary))
             loaded.setWorkingDir(str(Path(path).parent))  # where its LUTs lie
             loaded.validate()
@@ -117,6 +117,13 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
                     raise ConfigError("config_differs_from_lut", name=name, difference=difference)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError("config_invalid", path=path, reason=problem) from problem
+
+
+def _serialized(config: OCIO.Config) -> str:
+    """Return the text of a config; OpenColorIO declares no variables in it where all those of the environment count."""
+    text = str(config.serialize())
+    has_all = config.getEnvironmentMode() == OCIO.ENV_ENVIRONMENT_LOAD_ALL
+    return text.replace("environment:\n  {}\n", "", 1) if has_all else text
 
 
 @contextmanager

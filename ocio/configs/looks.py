@@ -1,6 +1,5 @@
 """The files that an estimate wrote for a plate, read back: its LUT and its color space."""
 
-import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +15,7 @@ from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
 from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
-from .file_rules import MOST_PATTERNS, plate_pattern
+from .file_rules import MOST_PATTERNS, plate_pattern, sequence_pattern
 from .files import load_config, plate_exposure
 from .plate_color_space import PlateColorSpace
 from .reference_space import LINEAR_NAMES
@@ -59,12 +58,12 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
     folder = lut_file.parent
     if document:
         names = [MOVIE_FRAME.sub("", photo["name"]) for photo in document["photographs"]]
-        photo = Path(names[0])
+        photo, frames = Path(names[0]), sequence_pattern(names)
         files = OutputFiles.named(folder, [photo])
         files = replace(files, linear=tuple(folder / name for name in document["files"]["linear"]))
         space = replace(
-            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document)),
-            file_patterns=tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
+            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document), file_pattern=frames),
+            file_patterns=(frames,) if frames else tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
             primaries=_primaries(document),
             linear_primaries=_linear_primaries(document),
         )
@@ -93,16 +92,16 @@ def _document(path: Path) -> dict[str, Any] | None:
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         float(document["exposure"]["stops"])
         str(document["output_space"]["interop_id"])
-        _primaries(document)
+        _primaries(document).to_xyz()
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
-    except (OSError, KeyError, OverflowError, TypeError, ValueError):
+    except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
     return document if is_named and document["photographs"] else None
 
 
 def _is_file_name(name: str) -> bool:
-    """Return whether a text is the name of a file, without a folder; ValueError if it has a surrogate of no byte."""
-    return "\0" not in name and 0 < len(os.fsencode(name)) < 250 and Path(name).name == name
+    """Return whether a text is the name of a file, without a folder; ValueError if it has a surrogate."""
+    return "\0" not in name and 0 < len(name.encode()) < 250 and Path(name).name == name
 
 
 def _exposure(folder: Path, document: dict[str, Any]) -> float:

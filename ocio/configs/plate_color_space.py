@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
 from typing import Self
 
-import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
@@ -32,6 +31,10 @@ CATEGORIES = ["file-io"]
 USUAL_LINEAR_FILE = "crfnet_linear.exr"
 
 
+#: The largest exposure up or down, in stops: powers of two that single precision holds.
+MOST_STOPS = 100
+
+
 @dataclass(frozen=True)
 class PlateColorSpace:
     """The color space of a plate: its camera's inverse response, an exposure, and its primaries.
@@ -54,7 +57,7 @@ class PlateColorSpace:
         lut_file = PureWindowsPath(self.lut_file)
         if not self.name.strip():
             raise ConfigError("nameless_color_space")
-        if not np.isfinite(self.exposure):
+        if not abs(self.exposure) <= MOST_STOPS:  # also NaN
             raise ConfigError("exposure_not_finite", name=self.name, exposure=self.exposure)
         if not lut_file.name or lut_file.anchor or ".." in lut_file.parts:
             raise ConfigError("lut_outside_config_folder", name=self.name, lut_file=self.lut_file)
@@ -62,9 +65,7 @@ class PlateColorSpace:
             raise ConfigError("lut_name_is_variable", name=self.name, lut_file=self.lut_file)
 
     @classmethod
-    def from_outputs(
-        cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
-    ) -> Self:
+    def from_outputs(cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str = "") -> Self:
         """Return the color space of a photograph, for a config next to the LUTs that an estimate writes.
 
         `file_pattern` is by default the photograph's name, where a frame number at the end (shot.0001.jpg) stands for
@@ -77,7 +78,7 @@ class PlateColorSpace:
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_patterns=(file_pattern or plate_pattern(photo.name),),
             exposure=exposure,
-            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear]),
+            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear], file_pattern),
         )
 
 

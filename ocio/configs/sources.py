@@ -79,11 +79,11 @@ def _built_in(name: str) -> ConfigSource:
 
 
 def _config_file(path: Path) -> Path | None:
-    """Return the config file that a path means, with links resolved, so that its LUTs are found; or None."""
+    """Return the config file that a path means, or None; OpenColorIO looks for LUTs next to a link, not to its file."""
     if (path.is_file() and not os.access(path, os.X_OK)) or path.suffix.lower() in (".ocio", ".ocioz"):
-        return path.resolve()
+        return path.absolute()
     if path.is_dir() and (path / CONFIG_NAME).is_file():
-        return (path / CONFIG_NAME).resolve()
+        return (path / CONFIG_NAME).absolute()
     executable = path if path.is_file() else Path(shutil.which(str(path)) or "")
     home = path if path.is_dir() else executable.resolve().parent if executable.is_file() else None
     matches = sorted(match for pattern in BLENDER_CONFIGS if home for match in home.glob(pattern))

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import MOST_BRIGHTNESS, NUMBERS, ResponseCurve, is_codes
 from crfnet_core.types import EqualByFields, Float64Array
 
 from ..defaults import LUT_LENGTH
@@ -105,9 +105,13 @@ class Lut1D(EqualByFields):
         Raises
         ------
         LutError
-            If integers beyond the domain, and above 1, are given: code values, which have to be divided.
+            If code values are given, which have to be divided: unsigned integers, or integers beyond the domain and
+            above 1; or numbers of which most lie above `MOST_BRIGHTNESS` times its end.
         """
-        inputs = _floating(pixels, last=self.domain[1])
+        last = max(self.domain[1], 1)
+        inputs = _floating(pixels, last=last)
+        if 2 * np.count_nonzero(inputs > MOST_BRIGHTNESS * last) > inputs.size:
+            raise LutError("lut_codes", largest=float(np.fmax.reduce(inputs, axis=None)), last=last)
         outputs = np.empty(inputs.shape, inputs.dtype)
         values = self.values.astype(inputs.dtype)
         source, target, steps = inputs.reshape(-1), outputs.reshape(-1), np.diff(values)
@@ -139,9 +143,9 @@ class Lut1D(EqualByFields):
         Parameters
         ----------
         pixels : array_like, any shape
-            Outputs, in the units of `values`; integers as in `apply`.
+            Outputs, in the units of `values`, light without an upper bound; integers as in `apply`.
         """
-        outputs = _floating(pixels, last=float(self.values[-1]))
+        outputs = _floating(pixels, last=max(float(self.values[-1]), 1))
         known = np.where(np.isnan(outputs), -np.inf, outputs).astype(np.float64)
         grid = np.linspace(*self.domain, self.values.size)
         return np.asarray(np.interp(known, self.values, grid), dtype=outputs.dtype)
@@ -238,8 +242,12 @@ def single_precision(values: ArrayLike) -> Float64Array:
 
 
 def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
-    """Return float32 for half and single precision, float64 for everything else; refuse integers above `last`."""
+    """Return float32 for half and single precision, float64 for everything else; refuse codes beyond `last`."""
     numbers = np.asarray(pixels)
-    if numbers.dtype.kind in "iu" and numbers.size and numbers.max() > max(last, 1):
+    if numbers.dtype.kind not in NUMBERS:
+        raise LutError("lut_of_no_numbers", kind=numbers.dtype)
+    most = -1 if is_codes(numbers) and last < 255 else last
+    if numbers.dtype.kind in "iu" and numbers.size and numbers.max() > most:
         raise LutError("lut_codes", largest=int(numbers.max()), last=last)
-    return numbers.astype(np.float32 if numbers.dtype in (np.float16, np.float32) else np.float64, copy=False)
+    is_single = numbers.dtype.kind == "f" and numbers.dtype.itemsize <= 4
+    return numbers.astype(np.float32 if is_single else np.float64, copy=False)

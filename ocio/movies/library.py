@@ -38,6 +38,9 @@ _TRANSPORT = ((188, 0), (192, 4))
 #: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 IPT_PROFILE, OPENING = 5, 60
 
+#: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.
+MOST_PIXELS, _TOO_LARGE = 150_000_000, "exceeds specified max pixel count"
+
 
 def is_movie(path: Path) -> bool:
     """Return whether a file is a movie, by its first bytes; False for a pipe and for unreadable files."""
@@ -55,16 +58,6 @@ def is_movie(path: Path) -> bool:
     )
 
 
-def has_cut_riff(path: Path) -> bool:
-    """Return whether a file ends before one of its RIFF chunks, of which an AVI file has one or more, does."""
-    end, size = 0, path.stat().st_size
-    with path.open("rb") as file:
-        while (head := file.read(8)).startswith(b"RIFF"):
-            end += 8 + int.from_bytes(head[4:], "little")
-            file.seek(end)
-    return end > size
-
-
 def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
     pattern, filtered = path.with_name(path.stem.replace("%", "_") + ".%04d.png"), ["-vf", filters] if filters else []
@@ -80,14 +73,21 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
     except ImportError:
         raise PlateError("pyav_missing", path=path, line=ffmpeg_line(path)) from None
     _capture_errors()
+    bounds = {"max_pixels": str(MOST_PIXELS)}  # also of frames that are larger than their container says
     try:
-        with av.open(f"file:{path}", metadata_errors="replace", timeout=(OPENING, None)) as container:
+        with av.logging.Capture() as messages:
+            opening = av.open(f"file:{path}", options=bounds, metadata_errors="replace", timeout=(OPENING, None))
+        with opening as container:
             stream = container.streams.best("video")
-            if not isinstance(stream, av.VideoStream) or stream.codec_context is None:
+            if not isinstance(stream, av.VideoStream) or (context := stream.codec_context) is None:
                 raise PlateError("no_video", path=path)
-            stream.codec_context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
-            if stream.codec_context.codec.canonical_name == "hevc":  # else it passes over errors within a frame
-                stream.codec_context.options = {"err_detect": "crccheck+explode"}
+            is_refused = any(_TOO_LARGE in message for _, _, message in messages)
+            if is_refused or context.width * context.height > MOST_PIXELS:
+                megapixels = MOST_PIXELS // 10**6
+                raise PlateError("movie_too_large", path=path, megapixels=megapixels, line=ffmpeg_line(path))
+            context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
+            is_hevc = context.codec.canonical_name == "hevc"  # it passes over errors within a frame
+            context.options = bounds | ({"err_detect": "crccheck+explode"} if is_hevc else {})
             yield container, stream
     except (av.FFmpegError, UnicodeDecodeError) as problem:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem

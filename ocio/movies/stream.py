@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -13,14 +14,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
 from crfnet_core.photograph.photo import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
-from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, has_cut_riff, opened, undecodable
+from .cut_files import is_cut_short
+from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, opened, undecodable
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -142,20 +143,34 @@ def check_progressive(movie: MovieStream) -> None:
 def read_stream(path: Path) -> MovieStream:
     """Return the description of a movie, read to its end, or refuse it; only the first frame is decoded."""
     with opened(path) as (container, stream):
-        context = stream.codec_context
-        if context.width * context.height > MAX_PIXELS:
-            raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
         if dolby_vision_profile(stream) == IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
-        codes = _color_codes(context)  # decoding overwrites them
+        codes = _color_codes(stream.codec_context)  # decoding overwrites them
         packets, frame, problems = _survey(container, stream)
-        is_cut = any(words in problem for words in CUT for problem in problems) or has_cut_riff(path)
+        is_cut = any(words in problem for words in CUT for problem in problems) or is_cut_short(path)
         if problems and not is_cut and container.format.name == MATROSKA:  # it passes over frames that it cannot find
             raise undecodable(path, problems[0])
         if frame is None:
             raise undecodable(path, "it holds no frame")
         movie = _described(path, container, stream, packets, frame, codes)
         return replace(movie, frame_count=movie.frame_count + is_cut, is_cut=is_cut)
+
+
+def packets_of(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
+    """Yield the packets of a movie, the last one empty; None for each frame of an AVI's index that is not found.
+
+    There a damaged head of a frame hides it, and the frames behind it have no time of their own.
+    """
+    is_avi = container.format.name == AVI
+    places = [entry.pos + 8 for entry in stream.index_entries if is_avi and entry.size]  # behind the heads
+    last = -inf
+    for packet in container.demux(stream):
+        place = inf if packet.pos is None else packet.pos
+        if last < 0 and place not in places:  # this is another file's index
+            places = []
+        yield from [None] * (bisect_left(places, place) - bisect_right(places, last))
+        last = place
+        yield packet
 
 
 def is_shown(packet: Any) -> bool:
@@ -196,7 +211,10 @@ def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry]
 
     packets, first = [], None
     with av.logging.Capture() as messages:
-        for packet in container.demux(stream):
+        for packet in packets_of(container, stream):
+            if packet is None:
+                packets.append((nan, False))
+                continue
             if first is None:
                 first = next(iter(decoded_packet(stream, packet)[0]), None)
             if is_shown(packet):

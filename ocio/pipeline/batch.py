@@ -7,6 +7,7 @@ import itertools
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import ClassVar
@@ -94,6 +95,11 @@ class Task:
     options: str
 
     @property
+    def place(self) -> str:
+        """The path of the photograph by which its record is found."""
+        return place_of(self.photo, self.batch.out)
+
+    @property
     def targets(self) -> tuple[Path, ...]:
         """The files of this photograph alone."""
         return self.batch.targets(self.folder, self.stem)
@@ -104,6 +110,7 @@ class Task:
         """Return the record of this photograph, whose files are whole, and of its estimate if there is one."""
         record = PhotographRecord(
             photograph=str(self.photo),
+            place=self.place,
             options=self.options,
             folder=self.folder.as_posix(),
             lut=lut.relative_to(self.batch.out).as_posix() if lut else "",
@@ -157,7 +164,7 @@ def _check_earlier(
 ) -> None:
     """Refuse results of other options, and configs without any record, which are not ours."""
     for task in tasks:
-        record = records.get(str(task.photo))
+        record = records.get(task.place)
         if record and not record.error and record.options != task.options and any(map(os.path.lexists, task.targets)):
             raise PlateError("other_options", path=batch.records.path, photo=task.photo)
     for config in configs:
@@ -173,13 +180,14 @@ def _distinct_stems(
     def keys(folder: Path, stem: str) -> list[str]:
         return [str(path).casefold() for path in batch.targets(folder, stem)]
 
-    owners: dict[str, Path] = {}
+    owners: dict[str, str] = {}
     for record in records.values():
         if record.stem:
-            owners |= dict.fromkeys(keys(Path(record.folder), record.stem), _absolute(Path(record.photograph)))
+            owners |= dict.fromkeys(keys(Path(record.folder), record.stem), record.place)
     stems = {}
     for photo, folder in photographs.items():
-        earlier, owner = records.get(str(photo)), _absolute(photo)
+        owner = place_of(photo, batch.out)
+        earlier = records.get(owner)
         first = [earlier.stem] if earlier and earlier.stem and earlier.folder == folder.as_posix() else []
         for stem in itertools.chain(first, _stems(photo)):
             if all(owners.get(key, owner) == owner for key in keys(folder, stem)):
@@ -197,6 +205,8 @@ def _stems(photo: Path) -> Iterator[str]:
         yield f"{cut_to_bytes(stem, LONGEST_STEM - NUMBER_BYTES)}_{number}"
 
 
-def _absolute(photo: Path) -> Path:
-    """Return the absolute path of a photograph, which may be named by another way to its folder."""
-    return Path(os.path.normpath(photo.absolute()))
+def place_of(photo: Path, out: Path) -> str:
+    """Return the path from the output folder to a photograph, wherever a command runs and both are moved together."""
+    with suppress(ValueError):  # of two drives
+        return Path(os.path.relpath(photo, out)).as_posix()
+    return photo.absolute().as_posix()

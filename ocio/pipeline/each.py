@@ -65,19 +65,19 @@ class EstimateBatch(Batch):
     def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:
         """Write the config of each folder; the record of a photograph whose LUT is damaged becomes an error."""
         with self.records.locked():  # two runs at once: the last that ends knows the records of both
-            damaged = self._write_configs([record.photograph for record in records])
+            damaged = self._write_configs([record.place for record in records])
         for record in damaged.values():
             self.records.append(record)  # so that the next run estimates the photograph again
-        return [damaged.get(record.photograph, record) for record in records]
+        return [damaged.get(record.place, record) for record in records]
 
     def _write_configs(self, order: Sequence[str]) -> dict[str, PhotographRecord]:
         """Write the config of each folder, with all photographs whose LUT is there; return the damaged ones."""
         damaged: dict[str, PhotographRecord] = {}
         every = self.records.read()
         folders: dict[str, list[PhotographRecord]] = {}
-        for photo in dict.fromkeys([*order, *sorted(every)]):  # whichever ended first
-            if not every[photo].error and (self.out / every[photo].lut).exists():
-                folders.setdefault(every[photo].folder, []).append(every[photo])
+        for place in dict.fromkeys([*order, *sorted(every)]):  # whichever ended first
+            if not every[place].error and (self.out / every[place].lut).exists():
+                folders.setdefault(every[place].folder, []).append(every[place])
         for records in folders.values():
             if len(records) <= MAX_COLOR_SPACES:
                 damaged |= self._write_config(records)
@@ -94,7 +94,7 @@ class EstimateBatch(Batch):
                 check[space.name] = read_lut(self.out / record.lut).channels[0]
                 spaces.append(with_light(space, record.exposure, record.plate, linear))
             except LutError as problem:
-                damaged[record.photograph] = replace(record, error=str(problem))
+                damaged[record.place] = replace(record, error=str(problem))
         write_config(files.config, portable_config(spaces), check=check, overwrite=True)
         return damaged
 

@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..configs.file_rules import sequence_pattern
 from ..configs.files import load_config
 from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
@@ -41,7 +42,9 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     for target, photo in zip(files.linear, photos, strict=False):  # without linear plates, no pairs
         if (other := owners.setdefault(target.name.casefold(), photo)) != photo:
             raise PlateError("one_name", first=other, second=photo, name=target.name)
-    return plan_files(files, photos, plates, PlateColorSpace.from_outputs(files, photos[0]), outputs.lut_length)
+    pattern = sequence_pattern([photo.name for photo in photos])
+    space = PlateColorSpace.from_outputs(files, photos[0], file_pattern=pattern)
+    return plan_files(files, photos, plates, space, outputs.lut_length)
 
 
 def plan_files(

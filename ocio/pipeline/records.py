@@ -29,6 +29,7 @@ class PhotographRecord:
     """The result of one photograph; docs/each.schema.json describes the entries."""
 
     photograph: str
+    place: str
     options: str = ""
     folder: str = ""
     lut: str = ""
@@ -52,7 +53,9 @@ class PhotographRecord:
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
         record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
         paths = [record.folder, record.lut, record.linear]
-        if not all(isinstance(text, str) for text in (*paths, record.photograph, record.error, record.plate.name)):
+        if not all(
+            isinstance(text, str) for text in (*paths, record.photograph, record.place, record.error, record.plate.name)
+        ):
             raise TypeError("a name is not a text")
         if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
             raise ValueError("a path leads elsewhere")  # files there might be replaced
@@ -80,7 +83,7 @@ class RecordFile:
         self.path = path
 
     def read(self) -> dict[str, PhotographRecord]:
-        """Return the last record of each photograph, without a line cut short; PlateError if it is another file."""
+        """Return each photograph's last record by its place, without a line cut short; PlateError for another file."""
         if not self.path.exists():
             return {}
         *lines, _ = self.path.read_bytes().split(b"\n")
@@ -88,7 +91,7 @@ class RecordFile:
             records = [PhotographRecord.from_entry(parse_json(line)) for line in lines]
         except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError) as problem:
             raise PlateError("not_records", path=self.path) from problem
-        return {record.photograph: record for record in records}
+        return {record.place: record for record in records}
 
     def append(self, record: PhotographRecord) -> None:
         """Append a record, and see that it is on the disk."""

@@ -59,15 +59,15 @@ def run_batch(
     tasks = plan_tasks(batch, photographs, records)
     with output_folder(batch.out):
         records = {} if batch.plates.overwrite else records
-        todo = [task for task in tasks if not task.is_done(records.get(str(task.photo)))]
+        todo = [task for task in tasks if not task.is_done(records.get(task.place))]
         done = len(tasks) - len(todo)
         show_progress(progress, done, len(tasks))
         for record in _ended(todo, workers or cores(), scheduler):
             batch.records.append(record)
-            records[record.photograph] = record
+            records[record.place] = record
             done += 1
             show_progress(progress, done, len(tasks))
-    return batch.finished([records[str(task.photo)] for task in tasks])
+    return batch.finished([records[task.place] for task in tasks])
 
 
 def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
@@ -95,7 +95,7 @@ def _recorded(task: Task) -> PhotographRecord:
         return _done_once(task)
     except BaseException as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
         error = str(error_of_file(problem, task.photo))
-        return PhotographRecord(photograph=str(task.photo), options=task.options, error=error)
+        return PhotographRecord(photograph=str(task.photo), place=task.place, options=task.options, error=error)
 
 
 def _done_once(task: Task) -> PhotographRecord:
@@ -104,7 +104,7 @@ def _done_once(task: Task) -> PhotographRecord:
         return _record_of_existing(task) or task.batch.done(task)
     except CRFNetError:
         for _ in range(RECORD_TRIALS if _existing(task) else 0):
-            record = task.batch.records.read().get(str(task.photo))
+            record = task.batch.records.read().get(task.place)
             if record and task.is_done(record):
                 return record
             time.sleep(RECORD_SECONDS)
@@ -120,7 +120,7 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
     if not there:
         return None
     records = task.batch.records.read()
-    record = records.get(str(task.photo))
+    record = records.get(task.place)
     if task.is_done(record):
         return record
     place = (task.folder.as_posix(), task.stem)

@@ -3,7 +3,7 @@
 import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 
 from ..errors import PlateError
@@ -25,7 +25,8 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
         return
     pool: Executor = ThreadPoolExecutor(1)
     if workers > 1:  # processes that start afresh, because onnxruntime's threads do not survive a fork
-        pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_leave_signals_to_the_parent)
+        with suppress(OSError, NotImplementedError):  # of a system without shared memory (/dev/shm): one by one
+            pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_leave_signals_to_the_parent)
     try:
         yield pool
     finally:

@@ -82,11 +82,11 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
     problem = oiio_message(output)
     if problem or not (is_written and is_closed):
         raise PlateError("exr_not_written", path=name, reason=first_line(problem))
-    if not _is_whole(path, header):
+    if not is_whole(path, header):
         raise PlateError("exr_not_written", path=name, reason="a part of it is missing")
 
 
-def _is_whole(path: Path, header: Any) -> bool:
+def is_whole(path: Path, header: Any) -> bool:
     """Return whether the chunks of a file fill it without a gap: OpenEXR reports no error of its last writes.
 
     With zips compression each scanline is a chunk: its y, the size of its data, and the data ("OpenEXR File Layout").

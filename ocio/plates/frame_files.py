@@ -14,15 +14,13 @@ from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
 from crfnet_core.photograph.recognition import refuse_linear
+from crfnet_core.response.curve import MOST_BRIGHTNESS
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
 
 #: Names of the one channel of a gray picture, and values of colorInteropID that say nothing of an encoding.
 GRAY, UNTAGGED = ("Y", "R"), ("", "unknown", "data")
-
-#: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
-MOST_BRIGHTNESS = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,16 @@
 """The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from crfnet_core.files import file_sha256
+
 from ..defaults import FRAMES_ANALYZED
 from ..errors import PlateError
-from .frame_files import FrameLoader, read_frame
+from .frame_files import FrameLoader, FrameSource, read_frame
 from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from .frame_pattern import FramePattern, listed
 
@@ -64,6 +66,14 @@ def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tupl
     steps = max(1, count - 1)
     positions = {(2 * last * step + steps) // (2 * steps) for step in range(count)}  # last * step / steps, rounded
     return tuple(sequence.paths[position] for position in sorted(positions))
+
+
+def identities(sequence: FrameSource) -> Callable[[int], str]:
+    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number."""
+    if isinstance(sequence, FrameSequence):
+        return lambda position: file_sha256(sequence.paths[position])
+    movie = file_sha256(sequence.paths[0])
+    return lambda position: f"{movie} {sequence.numbers[position]}"
 
 
 def _only_sequence(folder: Path) -> FramePattern:

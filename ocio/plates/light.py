@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,13 +19,13 @@ from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from ..errors import LutError, PlateError
 from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
+from .exr import is_whole
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
 
-#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and their source. The last
-#: two are the sample type, and width and height, which are not attributes.
-RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
-PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
-_DEPTH, _SIZE = "crfnet:depth", "crfnet:size"
+#: Our attributes of OpenEXR files: the plate (see `identities`), the LUT's provenance, the LUT itself, stops, primaries
+#: and their source. The last one is the sample type, which is not an attribute.
+PLATE, RESPONSE, LUT, EXPOSURE = "crfnet:plate", "crfnet:response", "crfnet:lut", "crfnet:exposure"
+PRIMARIES, PRIMARIES_SOURCE, _DEPTH = "crfnet:primaries", "crfnet:primariesSource", "crfnet:depth"
 
 #: Largest difference in stops between exposures that are the same.
 SAME_EXPOSURE = 1e-3
@@ -81,20 +82,20 @@ def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS)
     return float(response.channels[len(response.channels) // 2].apply(gray))
 
 
-def check_finished(
-    frames: Iterable[Path], light: PlateLight, depth: str, *, sizes: Mapping[Path, tuple[int, int]] | None = None
-) -> None:
-    """Raise a PlateError if finished frames have another exposure, LUT, space, sample type, size or primaries."""
-    for path in frames:
+def check_finished(plates: Iterable[tuple[Path, str]], light: PlateLight, depth: str) -> None:
+    """Raise a PlateError unless each file is the whole linear frame, in this light, of its plate: see `identities`."""
+    for path, plate in plates:
         written = _attributes(path)
-        if EXPOSURE in written and (difference := _difference(written, light, depth, (sizes or {}).get(path))):
+        if EXPOSURE not in written:
+            raise PlateError("finished_foreign", path=path)
+        if difference := _difference(written, plate, light, depth):
             raise PlateError("finished_differs", path=path, difference=difference)
 
 
-def _difference(written: dict[str, Any], light: PlateLight, depth: str, size: tuple[int, int] | None) -> str:
+def _difference(written: dict[str, Any], plate: str, light: PlateLight, depth: str) -> str:
     """Return in words how a finished frame differs; empty if it does not."""
-    if size and written[_SIZE] != size:
-        return "{} x {} pixels, not {} x {}".format(*written[_SIZE], *size)
+    if written.get(PLATE) != plate:
+        return "the light of another plate"
     if written[_DEPTH] != depth:
         return f"{written[_DEPTH]} samples, not {depth}"
     if abs(written[EXPOSURE] - light.stops) > SAME_EXPOSURE:
@@ -106,14 +107,12 @@ def _difference(written: dict[str, Any], light: PlateLight, depth: str, size: tu
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of an OpenEXR header by name, with its type and size; nothing if it cannot be read."""
-    source = oiio.ImageInput.open(str(path))
+    """Return the attributes of an OpenEXR header by name, with its sample type; nothing of a file that is not whole."""
+    source = oiio.ImageInput.open(str(path)) if path.is_file() else None
     if source is None:
         oiio_message()
         return {}
-    try:
+    with closing(source):
         header = source.spec()
-        form = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
-        return {attribute.name: attribute.value for attribute in header.extra_attribs} | form
-    finally:
-        source.close()
+        attributes = {attribute.name: attribute.value for attribute in header.extra_attribs}
+    return {**attributes, _DEPTH: str(header.format)} if is_whole(path, header) else {}

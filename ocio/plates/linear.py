@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, check_target
+from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
 
@@ -24,13 +25,14 @@ from .exr import SAMPLE_TYPES, linear_header, write_exr
 from .frame_files import EncodedFrame, FirstFrame, FrameLoader, FrameSource, first_frame, frame_path
 from .frame_numbers import format_frames
 from .frame_pattern import FramePattern
-from .frames import FrameSequence
-from .light import PlateLight, check_finished
+from .frames import FrameSequence, identities
+from .light import PLATE, PlateLight, check_finished
 from .primaries import check_same_primaries, plate_primaries
 
 Name = TypeVar("Name")
 
-#: Frames linearized at a time by default; each needs about 20 bytes of memory per pixel.
+#: Frames linearized at a time by default, fewer if they have more than `MAX_PIXELS` together: each needs about 20 bytes
+#: of memory per pixel.
 MAX_WORKERS = 8
 
 #: Rows linearized at a time, which keeps the memory for intermediate values small.
@@ -77,9 +79,10 @@ def linearize_plates(
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
     The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
-    requires of coverage. A target that exists is whole, and is left alone unless `overwrite` is set: the same call
-    resumes an interrupted one. `workers` frames, by default one a core, are in memory. Raise a CRFNetError before any
-    frame is written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
+    requires of coverage. Unless `overwrite` is set, targets that exist are left alone, so that the same call resumes an
+    interrupted one. `workers` frames, by default at most one a core, are in memory. Raise a CRFNetError before any
+    frame is written if the output does not fit the depth, or a target exists that is not the whole linear frame of its
+    plate in the same light; at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if workers is not None and workers < 1:
@@ -88,12 +91,11 @@ def linearize_plates(
         sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
     light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
-    conversion = _Conversion(light, _scale(light, options), options, first)
-    skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    sizes = {targets[first.position]: (first.frame.header.width, first.frame.header.height)} if first else {}
-    check_finished(skipped, light, options.depth, sizes=sizes)
-    left_alone = set(skipped)
-    pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
+    plate_of = identities(sequence)
+    conversion = _Conversion(light, _scale(light, options), options, first, plate_of)
+    pending = {target: position for position, target in enumerate(targets)}
+    skipped = () if options.overwrite else tuple(target for target in targets if target.exists())
+    check_finished(((target, plate_of(pending.pop(target))) for target in skipped), light, options.depth)
     failures: dict[Path, CRFNetError] = {}
     elsewhere: list[Path] = []  # finished by another process meanwhile
     loaders = sequence.loaders([*pending.values()])
@@ -102,7 +104,7 @@ def linearize_plates(
         for (target, position), load in zip(pending.items(), loaders, strict=True)
     )
     show_progress(progress, len(skipped), len(targets))
-    with closing(finished(jobs, workers or min(cores(), MAX_WORKERS))) as ended:
+    with closing(finished(jobs, workers or _workers(first))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
             if problem := future.exception():
                 if options.overwrite or not target.exists():
@@ -112,7 +114,7 @@ def linearize_plates(
             show_progress(progress, done, len(targets))
     if failures:
         raise _failure(failures, targets, sequence)
-    check_finished(elsewhere, light, options.depth)
+    check_finished(((target, plate_of(pending[target])) for target in elsewhere), light, options.depth)
     written = tuple(target for target in pending if target not in elsewhere)
     return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
 
@@ -125,12 +127,13 @@ class _Conversion:
     scale: float
     options: PlateOptions
     first: FirstFrame | None
+    plate_of: Callable[[int], str]
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
         frame = self._read(position, path, load)
         pixels = self._linear_pixels(frame)
-        attributes, depth = self.light.attributes, self.options.depth
+        attributes, depth = {**self.light.attributes, PLATE: self.plate_of(position)}, self.options.depth
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
@@ -163,7 +166,8 @@ class _Conversion:
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
             block = frame.samples[rows]  # (_ROWS, W, 3)
-            values = _look_up(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
+            light = _look_up(table, block) if is_coded else lut.apply(np.minimum(block, lut.domain[1]))
+            values = light if is_coded else light * np.float32(self.scale)
             if matrix is not None:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
@@ -172,6 +176,12 @@ class _Conversion:
                 linear[rows, :, 3:] = alpha
             linear[rows, :, :3] = values
         return linear
+
+
+def _workers(first: FirstFrame | None) -> int:
+    """Return how many frames of the size of the first are linearized at a time."""
+    pixels = first.frame.samples[..., 0].size if first else 1
+    return max(1, min(cores(), MAX_WORKERS, MAX_PIXELS // pixels))
 
 
 def finished(

@@ -134,12 +134,18 @@ def test_a_number_gives_a_number():
     "codes",
     [
         *(np.full((2, 2, 3), 200, np.uint8), np.array([1023], np.uint16), [0, 128, 255], 255),
-        *(np.array([np.nan, 0, 255], np.float32), np.linspace(0, 65535, BLOCK + 1), 128.5),
+        *(np.array([np.nan, 0, 255], np.float32), np.linspace(0, 65535, BLOCK + 1), 128.5, np.uint8([0, 1])),
     ],
 )
 def test_code_values_are_refused(codes):
     with refused(CurveError, "brightness_codes"):
         ResponseCurve.gamma().inverse(codes)
+
+
+@pytest.mark.parametrize("argument", [None, "0.5", [1j]])
+def test_anything_but_numbers_is_refused(argument):
+    with refused(CurveError, "not_numbers"):
+        ResponseCurve.gamma().forward(argument)
 
 
 def test_the_irradiances_are_uniform_and_cannot_be_changed():

@@ -16,23 +16,18 @@ from tests.helpers.mutations import mutated
 
 #: Name of a seed, how many bits its samples have, and attributes with which it is written.
 SEEDS = {
-    "plain.jpg": (8, {}),
+    **dict.fromkeys(("plain.jpg", "gray.jpg", "8.dpx", "8.jp2", "8.jxl", "8.bmp"), (8, {})),
     "progressive.jpg": (8, {"jpeg__progressive": 1}),
     "exif.jpg": (8, {"Make": "MAKER", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "Software": "x"}),
-    "gray.jpg": (8, {}),
     "8.png": (8, {"Comment": "text"}),
     "16.png": (16, {}),
     "8.tif": (8, {"compression": "none"}),
     "lzw.tif": (8, {"compression": "lzw"}),
     "zip.tif": (16, {"compression": "zip"}),
     "tiled.tif": (16, {"tile_width": 16, "tile_height": 16}),
-    "8.dpx": (8, {}),
     "10.dpx": (16, {"oiio__BitsPerSample": 10}),
     "lossy.webp": (8, {"compression": "webp:80"}),
     "lossless.webp": (8, {"compression": "lossless"}),
-    "8.jp2": (8, {}),
-    "8.jxl": (8, {}),
-    "8.bmp": (8, {}),
     "half.exr": (0, {"compression": "zip", "owner": "a"}),
     "piz.exr": (0, {"compression": "piz"}),
 }

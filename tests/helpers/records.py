@@ -7,4 +7,4 @@ def records_in(folder):
     """Return the last record of each photograph in an output folder."""
     (path,) = folder.glob("*.jsonl")
     records = [json.loads(line) for line in path.read_bytes().split(b"\n")[:-1]]
-    return list({record["photograph"]: record for record in records}.values())
+    return list({record["place"]: record for record in records}.values())

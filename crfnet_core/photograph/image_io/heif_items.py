@@ -1,31 +1,23 @@
 """The items of a HEIF file (ISO/IEC 14496-12, 23008-12), and how often they are decoded: 80 KB can ask for 60 GP."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 from crfnet_core.photograph.image_io.iso_boxes import boxes
-
-#: Bytes of the largest box `meta`, and the most boxes before it.
-MOST_META, MOST_BOXES = 4 * 2**20, 1000
 
 #: Most steps from an item to one that it is made of; phones need two.
 MOST_STEPS = 8
 
 
-def meta_box(path: Path) -> bytes:
-    """Return the content of a file's box `meta`, nothing without it; ValueError if it is too large or far away."""
-    with path.open("rb") as file:
-        for _ in range(MOST_BOXES):
-            size, kind = int.from_bytes(file.read(4)), file.read(4)
-            size, head = (int.from_bytes(file.read(8)), 16) if size == 1 else (size, 8)
-            if kind == b"meta" and size <= MOST_META:
-                return file.read(size - head if size else MOST_META)
-            if kind == b"meta":
-                break
-            if size < head:  # the last box, or not a box
-                return b""
-            file.seek(size - head, 1)
-    raise ValueError("its items are not found")
+def has_named_items(meta: bytes) -> bool:
+    """Return whether the types and names of all items are UTF-8; pi-heif 1.4 ends the process at others."""
+    for kind, content in boxes(meta[4:]):
+        if kind == b"iinf":
+            for _, entry in boxes(content[6 if content[:1] == b"\0" else 8 :]):  # behind the number of entries
+                try:
+                    entry[10 if entry[:1] > b"\2" else 8 :].decode()  # behind the version, the flags and the numbers
+                except UnicodeDecodeError:
+                    return False
+    return True
 
 
 def decoded_pixels(meta: bytes) -> int:

@@ -4,7 +4,6 @@ HEIC is decoded by pi-heif, BMP and AVIF of 8 bits by Pillow. Both stop at 8 bit
 decoded by PyAV, which is an optional dependency.
 """
 
-import re
 import warnings
 from collections.abc import Mapping
 from contextlib import suppress
@@ -20,7 +19,8 @@ from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, damaged, with_segments
-from crfnet_core.photograph.image_io.heif_items import decoded_pixels, meta_box
+from crfnet_core.photograph.image_io.heif_items import decoded_pixels, has_named_items
+from crfnet_core.photograph.image_io.iso_boxes import find_box
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeValues, upright
 from crfnet_core.photograph.yuv import Coding, rgb_codes
@@ -57,11 +57,11 @@ def read_pillow_file(path: Path, kind: str) -> CodeValues:
 
     The header has the names that OpenImageIO gives to a JPEG's, and `CICP`, four integers. Raises as `read_photo`.
     """
-    boxes, main = b"", None
+    meta, main = b"", None
     try:
         if kind != "BMP":
-            boxes = _boxes(path)
-            main = _opened_heif(path, kind, boxes)
+            meta = _meta(path)
+            main = _opened_heif(path, kind)
         picture = _heic(main) if kind == "HEIC" else _avif(path, main) if kind == "AVIF" else _bmp(path)
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
@@ -69,15 +69,13 @@ def read_pillow_file(path: Path, kind: str) -> CodeValues:
         raise damaged(path, kind, str(problem)) from None
     nclx = main.info.get("nclx_profile") if main else None
     cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
-    return _code_values(picture, kind, cicp, has_gain_map=any(mark in boxes for mark in _GAIN_MAPS))
+    return _code_values(picture, kind, cicp, has_gain_map=any(mark in meta for mark in _GAIN_MAPS))
 
 
-def _opened_heif(path: Path, kind: str, boxes: bytes) -> Any:
+def _opened_heif(path: Path, kind: str) -> Any:
     """Return the main picture by pi-heif, not yet decoded; None for AVIF that it does not read, but Pillow may."""
     import pi_heif
 
-    if not _has_named_items(boxes):
-        raise ValueError("the type of an item is not text")
     with suppress(*_DAMAGE if kind == "AVIF" else ()):
         main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
         check_size(path, *main.size)
@@ -85,27 +83,14 @@ def _opened_heif(path: Path, kind: str, boxes: bytes) -> Any:
     return None
 
 
-def _boxes(path: Path) -> bytes:
-    """Return the content of the box `meta`; raise PhotoError if its items would be decoded again and again."""
-    try:
-        boxes = meta_box(path)
-        if decoded_pixels(boxes) > MOST_DECODED:
-            raise ValueError("its tiles have many more pixels than the picture")
-    except (IndexError, ValueError) as problem:
-        raise damaged(path, "HEIF", str(problem)) from None
-    return boxes
-
-
-def _has_named_items(boxes: bytes) -> bool:
-    """Return whether the types and names of all items (`infe`) are UTF-8; pi-heif 1.4 ends the process at others."""
-    for match in re.finditer(b"infe", boxes):
-        end = match.start() - 4 + int.from_bytes(boxes[match.start() - 4 : match.start()])
-        entry = boxes[match.end() : end]
-        try:
-            entry[10 if entry[:1] > b"\2" else 8 :].decode()  # behind the version, the flags and the numbers
-        except UnicodeDecodeError:
-            return False
-    return True
+def _meta(path: Path) -> bytes:
+    """Return the content of the box `meta`; ValueError if decoders may not see it: it takes hours, or the process."""
+    meta = find_box(path, b"meta")
+    if decoded_pixels(meta) > MOST_DECODED:
+        raise ValueError("its tiles have many more pixels than the picture")
+    if not has_named_items(meta):
+        raise ValueError("the type of an item is not text")
+    return meta
 
 
 def _heic(main: Any) -> _Picture:

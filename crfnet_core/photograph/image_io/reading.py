@@ -3,7 +3,7 @@
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -22,7 +22,9 @@ from crfnet_core.photograph.image_io.header_checks import (
     damaged,
     oiio_message,
     with_plain_texts,
+    with_segments,
 )
+from crfnet_core.photograph.image_io.iso_boxes import find_box
 from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
@@ -192,6 +194,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
+        if kind == "JPEG XL":
+            header = _with_exif(header, path)
         if kind in LAST_ALPHA_KINDS:
             header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
@@ -207,6 +211,16 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
             yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()
+
+
+def _with_exif(header: Any, path: Path) -> Any:
+    """Return the header of a JPEG XL file with its EXIF, which OpenImageIO leaves out; a codestream has no boxes."""
+    with suppress(ValueError), path.open("rb") as file:
+        if file.read(1) != b"\xff":
+            exif = find_box(path, b"Exif")
+            header = with_segments(header, {"exif": exif[4 + int.from_bytes(exif[:4]) :]})
+            header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
+    return header
 
 
 def _seek_picture(source: Any) -> None:

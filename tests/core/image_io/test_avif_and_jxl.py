@@ -10,6 +10,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
 
@@ -86,6 +87,18 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
     for read in (read_codes, read_metadata):
         with refused(PhotoError, "jxl_linear"):
             read(tmp_path / "a.jxl")
+
+
+def test_exif_of_jpeg_xl_is_read_and_does_not_turn_it(tmp_path):
+    codes, exif = colored_ramp(8), Image.Exif()
+    exif[0x010F], exif[0x0112] = "Maker", 6
+    content = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100").read_bytes()
+    box = bytes(4) + exif.tobytes()
+    at = content.index(b"jxlp") - 4
+    (tmp_path / "a.jxl").write_bytes(content[:at] + struct.pack(">I", 8 + len(box)) + b"Exif" + box + content[at:])
+    values = read_codes(tmp_path / "a.jxl")
+    np.testing.assert_array_equal(values.codes, codes)
+    assert (values.metadata.make, values.header.get_int_attribute("Orientation")) == ("Maker", 1)
 
 
 def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():

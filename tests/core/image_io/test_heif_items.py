@@ -4,7 +4,8 @@ import pytest
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.photograph.image_io.heif_items import MOST_META, decoded_pixels, meta_box
+from crfnet_core.photograph.image_io.heif_items import decoded_pixels
+from crfnet_core.photograph.image_io.iso_boxes import MOST_META, find_box
 from tests.helpers.refusals import refused
 
 
@@ -38,7 +39,7 @@ def heif(path, references, side=8192, before=b""):
 def test_an_item_counts_as_often_as_it_is_decoded(tmp_path):
     tiles = range(4, 14)
     path = heif(tmp_path / "a.heic", {1: [2, 3], 2: tiles, 3: tiles}, side=10, before=box(b"free", bytes(2**21)))
-    assert decoded_pixels(meta_box(path)) == 100 * (1 + 2 + 2 * 10)
+    assert decoded_pixels(find_box(path, b"meta")) == 100 * (1 + 2 + 2 * 10)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +56,7 @@ def test_a_heif_file_that_would_be_decoded_for_minutes_is_refused(tmp_path, monk
 @pytest.mark.parametrize("before", [box(b"free") * 2000, struct.pack(">I", MOST_META + 1) + b"meta"])
 def test_items_that_stand_where_no_writer_puts_them_are_refused(tmp_path, before):
     with pytest.raises(ValueError, match="not found"):
-        meta_box(heif(tmp_path / "a.heic", {1: [2]}, before=before))
+        find_box(heif(tmp_path / "a.heic", {1: [2]}, before=before), b"meta")
 
 
 def test_names_that_are_not_text_are_found_behind_a_long_box(root, tmp_path):

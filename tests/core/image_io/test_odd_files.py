@@ -171,14 +171,6 @@ def test_palettes_are_refused_alike(tmp_path, name):
             read(tmp_path / name)
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp"])
-def test_gray_is_no_palette(tmp_path, name):
-    """Although a BMP file of 8 bits always has one."""
-    gray = colored_ramp(8).astype(np.uint8)[..., 0]
-    Image.fromarray(gray).save(tmp_path / name)
-    np.testing.assert_array_equal(read_codes(tmp_path / name).codes[..., 0], gray)
-
-
 @pytest.mark.parametrize("extra", [((254, 4, 0), (330, 4, 8)), ((254, 4, 2),), ()])
 def test_other_tiff_files_are_no_raw(tmp_path, extra):
     (tmp_path / "a.tif").write_bytes(tiff(2, 2, extra=extra, content=bytes(range(12))))

@@ -147,7 +147,7 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
         {"exposure": "much"},
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
         {"primaries": {"name": "mine"} | {key: [0.3, 0.3] for key in ("red", "green", "blue", "white")}},
-        {"photograph": 1},
+        *({name: 1} for name in ("photograph", "place")),
         {"folder": "../elsewhere"},
         {"folder": "/elsewhere"},
         {"linear": "../elsewhere/a.exr"},
@@ -155,10 +155,10 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
 )
 def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
     file = RecordFile(tmp_path / ESTIMATES)
-    file.append(PhotographRecord(photograph="a.jpg"))
+    file.append(PhotographRecord(photograph="a.jpg", place="a.jpg"))
     assert list(file.read()) == ["a.jpg"]
     with file.path.open("a") as lines:
-        lines.write(json.dumps(dataclasses.asdict(PhotographRecord(photograph="b.jpg")) | change) + "\n")
+        lines.write(json.dumps(dataclasses.asdict(PhotographRecord(photograph="b.jpg", place="b.jpg")) | change) + "\n")
     with refused(PlateError, "not_records"):
         file.read()
 

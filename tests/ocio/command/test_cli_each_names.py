@@ -59,6 +59,20 @@ def test_a_photograph_of_a_later_run_takes_no_files_of_another(estimate, photogr
     assert [record["lut"] for record in records_in(tmp_path / "out")] == ["a.spi1d", "a_2.spi1d"]
 
 
+def test_a_photograph_is_known_by_its_place_wherever_the_command_runs(crfnet, look, photographs, tmp_path, monkeypatch):
+    def linearize(shot, *names):
+        monkeypatch.chdir(tmp_path / shot)
+        options = ("--each", "--workers", "1", "--lut", look / "plate.spi1d", "--out", "../out")
+        assert crfnet("linearize", *names, *options).code == 0
+        return len(list((tmp_path / "out").rglob("*.exr")))
+
+    shutil.copytree(photographs, tmp_path / "b")
+    photographs.rename(tmp_path / "a")
+    assert linearize("a", "a.jpg", "b.JPG") == 2
+    assert linearize("b", "a.jpg") == 3
+    assert linearize("a", tmp_path / "a" / "a.jpg") == 3
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
 def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
     for name in (b"\xff.jpg", b"\xfe.jpg", b"a\xff.jpg"):

@@ -3,8 +3,6 @@
 import json
 import re
 import shlex
-import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -18,7 +16,6 @@ from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed
 from tests.helpers.movies import run_ffmpeg, write_movie
 from tests.helpers.plates import read_exr
-from tests.helpers.processes import start_interruptible
 from tests.helpers.schemas import problems_by, read_schema
 
 needs_av = pytest.mark.usefixtures("av")
@@ -63,25 +60,6 @@ def test_some_frames_become_linear_plates(linearize, tmp_path):
     assert [Path(path).name for path in document["written"]] == [f"l.00{number}.exr" for number in ("05", 10, 15, 20)]
     assert document["missing"] == [25, 30]
     assert document["movie"].startswith("clip.mp4: H.264")
-
-
-@needs_av
-@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_an_interrupted_run_leaves_whole_frames(look, tmp_path):
-    movie = write_movie(tmp_path / "a.mp4", 96, size=(640, 480))
-    out = tmp_path / "linear"
-    arguments = ["linearize", movie, "--lut", look / "plate.spi1d", "--out", out / "l.%04d.exr"]
-    command = [sys.executable, "-m", "crfnet", *arguments]
-    process = start_interruptible(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    while process.poll() is None and not (out.is_dir() and len(list(out.glob("l.*.exr"))) > 2):
-        pass
-    process.send_signal(signal.SIGINT)
-    error = process.communicate(timeout=60)[1]
-    assert process.returncode == 130
-    assert error.decode() == "crfnet: interrupted\n"
-    names = listed(out)
-    assert 2 < len(names) < 96
-    assert all(name.startswith("l.") for name in names), "nothing half-written"
 
 
 @needs_av

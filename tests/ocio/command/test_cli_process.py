@@ -132,6 +132,39 @@ def test_an_estimate_gives_no_warning_of_python_and_leaves_the_home_empty(argume
     assert "plate_sheet.png" in listed(tmp_path / "out")
 
 
+#: Run a command with an empty folder for devices, and therefore without the shared memory /dev/shm.
+WITHOUT_DEVICES = ["unshare", "-rm", "sh", "-c", 'mount -t tmpfs none /dev && exec "$@"', "sh"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs namespaces")
+@pytest.mark.parametrize("command", ["estimate", "linearize"])
+def test_works_without_shared_memory(photographs, look, fixed_model, tmp_path, command):
+    """Processes of a pool cannot work without it."""
+    if shutil.which("unshare") is None or subprocess.run([*WITHOUT_DEVICES, "true"], check=False).returncode:
+        pytest.skip("namespaces are not allowed here")
+    model = ("--model", fixed_model, "--no-sheet", "--no-linear")
+    options = model if command == "estimate" else ("--lut", look / "plate.spi1d")
+    done = subprocess.run(
+        [
+            *WITHOUT_DEVICES,
+            CRFNET,
+            command,
+            photographs,
+            "--each",
+            "--workers",
+            "2",
+            "--out",
+            tmp_path / "out",
+            *options,
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert len(list((tmp_path / "out").rglob("*.exr" if command == "linearize" else "*.spi1d"))) == 3
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
 def test_the_list_of_fonts_lasts_in_a_folder_that_nobody_else_may_enter(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))

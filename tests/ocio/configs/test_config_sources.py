@@ -30,14 +30,14 @@ def executable(path):
     return path
 
 
-def test_a_file_is_itself_and_a_link_or_a_folder_leads_to_it(config, tmp_path):
+def test_a_file_is_itself_and_so_is_a_link_and_a_folder_leads_to_it(config, tmp_path):
     result = find_config(str(config))
     assert (result.path, result.name) == (config, str(config))
     assert result.config.getName() == "crfnet"
     for link in (tmp_path / "link.ocio", tmp_path / "config.ocio"):
         link.symlink_to(config)
-        assert find_config(str(link)).path == config
-    assert find_config(str(tmp_path)).path == config
+        assert find_config(str(link)).path == link
+    assert find_config(str(tmp_path)).path == link
 
 
 def test_built_in_configs_have_names():

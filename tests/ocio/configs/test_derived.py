@@ -1,5 +1,7 @@
 """Plates in a copy of somebody's config: the base stays, and everything of it means the same in the copy."""
 
+import re
+
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
@@ -106,14 +108,39 @@ class TestBase:
         result = converted(loaded(add(studio, tmp_path / "new", small_look).path), "film", "scene_linear", CODES)
         np.testing.assert_array_equal(result, converted(loaded(studio), "film", "scene_linear", CODES))
 
-    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance):
-        """The plate's LUT would be called film.spi1d, like one of the base."""
-        look = write_look(tmp_path / "look", ["film.jpg"])
+    def test_variables_that_a_config_does_not_declare_count_as_before(self, studio, small_look, tmp_path, monkeypatch):
+        monkeypatch.setenv("SHOT", str(tmp_path))
+        write_lut(tmp_path / "film.spi1d", THIRD_LUT)
+        text = re.sub(r"environment:\n( .*\n)+", "", studio.read_text()).replace("$SHOW/luts", "luts")
+        studio.write_text(text.replace("- luts", "- $SHOT", 1))
+        result = loaded(add(studio, tmp_path / "new", small_look).path)
+        assert_same(conversions(result), conversions(loaded(studio)))
+        np.testing.assert_allclose(converted(result, "film", "scene_linear", CODES), THIRD_LUT.apply(CODES), atol=1e-6)
+
+    @pytest.mark.parametrize("path", ["luts", "../link/../luts"])
+    def test_a_link_is_a_base_of_its_own(self, studio, small_look, tmp_path, path):
+        """OpenColorIO looks for files next to it, and takes ".." out of names."""
+        studio.write_text(studio.read_text().replace("- luts", f"- {path}"))
+        (tmp_path / "show" / "luts").mkdir(parents=True)
+        (tmp_path / "luts").mkdir()
+        for folder in (tmp_path / "show" / "luts", tmp_path / "luts"):
+            write_lut(folder / "film.spi1d", THIRD_LUT)
+        (tmp_path / "link").symlink_to(studio.parent / "luts")
+        (tmp_path / "show" / "config.ocio").symlink_to(studio)
+        result = loaded(add(tmp_path / "show" / "config.ocio", tmp_path / "new", small_look).path)
+        assert_same(conversions(result), conversions(loaded(tmp_path / "show" / "config.ocio")))
+        with refused(ConfigError, "base_would_change"):
+            add(tmp_path / "show" / "config.ocio", studio.parent, small_look)
+
+    @pytest.mark.parametrize("name", ["film", "FILM"])
+    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
+        """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
+        look = write_look(tmp_path / "look", [f"{name}.jpg"])
         done = add(studio, tmp_path / "new", look)
-        assert listed(tmp_path / "new") == ["config.ocio", "film (look).spi1d"]
+        assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
         result = loaded(done.path)
         assert_same(conversions(result), conversions(loaded(studio)))
-        light = converted(result, "CRF film", "scene_linear", CODES)
+        light = converted(result, f"CRF {name}", "scene_linear", CODES)
         np.testing.assert_allclose(light, LUT.apply(CODES), atol=tolerance.plate)
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
@@ -251,6 +278,14 @@ class TestRules:
         linear = result.getColorSpace(interop_id).getName()
         for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr"):
             assert space_of(result, path) == linear
+
+    def test_a_sequence_without_a_dot_has_them_too(self, tmp_path):
+        look = write_look(tmp_path / "look", ["skyline_0001.png", "skyline_0090.png"], interop_id="lin_ap1_scene")
+        result = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert [space_of(result, f"skyline_0050.{suffix}") for suffix in ("png", "exr")] == [
+            "CRF skyline_0001",
+            "ACEScg",
+        ]
 
     def test_a_movie_has_rules_for_its_file_and_its_linear_frames(self, tmp_path):
         look = write_look(tmp_path / "look", ["clip.mp4 frame 1", "clip.mp4 frame 9"], interop_id="lin_ap1_scene")

@@ -1,5 +1,6 @@
 """The files of an estimate, read back."""
 
+import functools
 import json
 
 import numpy as np
@@ -14,6 +15,18 @@ from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.colorimetry import AP1, DISPLAY_P3, REC709, Primaries
 from tests.helpers.looks import LUT, OTHER_LUT, write_look
 from tests.helpers.refusals import refused
+
+
+def refusal(folder, root, *keys):
+    """Return the code of the refusal of the sample's document, in which the entry at the keys is the last of them."""
+    document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
+    *path, key, value = keys
+    entry = functools.reduce(lambda part, name: part[name], path, document)
+    entry[key] = value
+    (folder / "plate.json").write_text(json.dumps(document))
+    with pytest.raises(ConfigError) as caught:
+        read_looks(folder / "plate.json")
+    return caught.value.code
 
 
 def test_folder_document_and_lut_are_one_look(tmp_path):
@@ -70,13 +83,24 @@ def test_anything_else_is_refused(tmp_path, name, content, code):
         read_looks(path)
 
 
-@pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", "\ud800.spi1d", "a\0.spi1d", 5, None])
+@pytest.mark.parametrize(
+    "name", ["", "../plate.spi1d", "a/b.spi1d", "\ud800.spi1d", "a\udce9.spi1d", "a\0.spi1d", 5, None]
+)
 def test_a_document_does_not_lead_out_of_its_folder(tmp_path, root, name):
-    document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
-    document["files"]["spi1d"] = name
-    (tmp_path / "plate.json").write_text(json.dumps(document))
-    with refused(ConfigError, "not_a_look"):
-        read_looks(tmp_path / "plate.json")
+    assert refusal(tmp_path, root, "files", "spi1d", name) == "not_a_look"
+    assert refusal(tmp_path, root, "photographs", 0, "name", name) == "not_a_look"
+
+
+@pytest.mark.parametrize("point", [[1, 0], [0.3127, 0.329]])
+def test_primaries_that_make_no_matrix_are_refused(tmp_path, root, point):
+    corners = dict.fromkeys(("red", "green", "blue", "white"), point)
+    assert refusal(tmp_path, root, "primaries", {"name": "none", **corners}) == "not_a_look"
+
+
+@pytest.mark.parametrize("stops", [2000, 1e308])
+def test_an_exposure_beyond_single_precision_is_refused(tmp_path, root, stops):
+    (tmp_path / "plate.spi1d").write_bytes((root / "docs" / "sample" / "plate.spi1d").read_bytes())
+    assert refusal(tmp_path, root, "exposure", "stops", stops) == "exposure_not_finite"
 
 
 def test_a_missing_lut_is_named(tmp_path):

@@ -9,6 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from crfnet.errors import LutError
 from crfnet.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
+from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.refusals import refused
 
@@ -65,7 +66,7 @@ def test_pixels_keep_their_shape_and_are_not_written():
     assert (pixels == 2).all()
     assert lut.apply(0.5).shape == ()
     assert lut.apply(np.zeros((0, 3))).shape == (0, 3)
-    assert lut.apply(np.float16([0.5])).dtype == np.float32
+    assert lut.apply(np.float16([0.5])).dtype == lut.apply(np.array([0.5], ">f4")).dtype == np.float32
     assert lut.apply([1]).dtype == np.float64
 
 
@@ -200,9 +201,20 @@ def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(c
 def test_code_values_are_refused(true_response, step):
     """Clipped, all but the first would be white."""
     lut = inverse_response_lut(true_response)
-    with refused(LutError, "lut_codes", largest=255):
-        step(lut, np.array([[[0, 128, 255]]], np.uint8))
+    for codes in (np.array([[[0, 128, 255]]], np.uint8), np.uint16([0, 1]), [0, 2]):
+        with refused(LutError, "lut_codes", largest=np.max(codes)):
+            step(lut, codes)
+    with refused(LutError, "lut_of_no_numbers"):
+        step(lut, "0.5")
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
+
+
+@pytest.mark.parametrize("codes", [np.linspace(0, 255, 9, dtype=np.float32), [np.nan, 3, 4, 0.5, 9]])
+def test_floating_point_codes_are_refused_and_light_has_no_bound(true_response, codes):
+    lut = inverse_response_lut(true_response, domain=(-0.125, 1.125))
+    with refused(LutError, "lut_codes"):
+        RgbLut1D((lut, lut, lut)).apply(np.stack([codes] * 3, axis=-1))
+    assert np.nanmax(lut.apply_inverse(codes)) == pytest.approx(1.125)
 
 
 def test_integers_within_the_domain_are_taken():

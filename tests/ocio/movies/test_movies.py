@@ -10,11 +10,12 @@ from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
 from crfnet.movies.stream import read_stream
 from tests.helpers.images import write_image
-from tests.helpers.movies import pictures, write_movie
+from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 B_FRAMES = {"preset": "fast", "g": "8", "bf": "3"}
+INTRA = {"g": "1", "qmin": "1", "qmax": "1"}
 LOSS = "log-level=error:crf=2"
 
 #: File, frames and how it is written: codecs and containers that users have, and clocks that trip decoders.
@@ -31,6 +32,10 @@ MOVIES = {
     "exif in frames": ("a.mov", 6, {"codec": "tiff", "form": "rgb24"}),  # of whose side data PyAV knows nothing
     "uncompressed": ("a.mov", 6, {"codec": "rawvideo", "form": "uyvy422"}),
     "odd size": ("a.mkv", 6, {"codec": "ffv1", "size": (131, 97)}),
+    "y4m": ("a.y4m", 6, {"codec": "rawvideo"}),
+    "ogg": ("a.ogg", 6, {"codec": "libvpx"}),
+    "bare h264": ("a.h264", 24, {"options": B_FRAMES}),
+    "bare hevc": ("a.265", 24, {"codec": "libx265", "options": {"x265-params": LOSS}}),
     "transport stream": ("a.ts", 24, {"options": B_FRAMES}),
     "wrapped clock": ("a.ts", 24, {"muxer": {"output_ts_offset": str((2**33 - 30000) / 90000)}}),
     "negative times": ("a.mkv", 24, {"times": range(-12, 12)}),
@@ -75,6 +80,13 @@ def test_all_frames_are_there_in_order(tmp_path, name):
     assert np.abs(next(frames.loaders([0]))().samples / WHITE - picture).mean() < 0.02
 
 
+def test_theora_is_read(movie, tmp_path):
+    """PyAV does not write it."""
+    run_ffmpeg("-i", movie, "-c:v", "libtheora", "-q:v", 10, tmp_path / "a.ogv")
+    assert is_movie(tmp_path / "a.ogv")
+    assert bars(MovieFrames.find(tmp_path / "a.ogv")) == list(range(1, 25))
+
+
 @pytest.mark.parametrize("name", ["h264", "hevc 10 bits", "transport stream"])
 def test_key_frames_are_decoded_alone(tmp_path, name):
     file, count, options = MOVIES[name]
@@ -96,13 +108,13 @@ def test_frames_are_chosen_and_missing_ones_named(movie):
     assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
 
 
-def damage(path, number, start=0.0, end=1.0):
-    """Write zeros over a part of a movie's packet, counted from 1 in the order of the file."""
+def damage(path, number, start=0.0, end=1.0, *, before=0):
+    """Write zeros over a part of a movie's packet, counted from 1 in the order of the file, and bytes before it."""
     with av.open(str(path)) as container:
         packet = [packet for packet in container.demux(video=0) if packet.size][number - 1]
     content = bytearray(path.read_bytes())
     begin, end = (packet.pos + int(packet.size * part) for part in (start, end))
-    content[begin:end] = bytes(end - begin)
+    content[begin - before : end] = bytes(end - begin + before)
     path.write_bytes(content)
     return path
 
@@ -131,6 +143,18 @@ def test_damage_fails_up_to_the_next_key_frame_and_the_others_keep_their_numbers
     assert bars(MovieFrames.find(path)) == [None if number in lost else number for number in range(1, 25)]
 
 
+@pytest.mark.parametrize(
+    ("codec", "options", "last"),
+    [("ffv1", {"g": "1"}, 11), ("mpeg4", {"g": "8", "bf": "0"}, 16), ("mpeg4", {"g": "8", "bf": "2"}, 24)],
+)
+def test_an_avi_frame_whose_head_is_damaged_fails_and_the_others_keep_their_numbers(tmp_path, codec, options, last):
+    """With frames that are shown later than others behind them, FFmpeg leaves out more than the one it does not see."""
+    path = write_movie(tmp_path / "a.avi", 24, codec=codec, options={"qmin": "1", "qmax": "1", **options})
+    shown = bars(MovieFrames.find(damage(path, 11, end=0, before=8)))
+    assert shown[last:] == [*range(last + 1, 25)]
+    assert (shown[:8], shown[10:last], len(shown)) == ([*range(1, 9)], [None] * (last - 10), 24)
+
+
 def test_a_damaged_first_frame_counts(tmp_path):
     path = damage(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le"), 1)
     assert bars(MovieFrames.find(path)) == [None, 2, 3, 4, 5, 6]
@@ -142,6 +166,10 @@ def test_a_damaged_first_frame_counts(tmp_path):
         ("a.mkv", {"codec": "ffv1"}),
         ("a.avi", {"codec": "ffvhuff", "form": "rgb24"}),
         ("a.mov", {"codec": "qtrle", "form": "rgb24", "muxer": {"movflags": "faststart"}}),
+        ("a.wmv", {"codec": "wmv2", "options": INTRA}),
+        ("a.flv", {"codec": "flv", "options": INTRA}),
+        ("a.mxf", {"codec": "mpeg2video", "form": "yuv422p", "options": INTRA}),
+        ("a.ogv", {"codec": "libvpx", "options": {"g": "1", "crf": "4", "b": "9M"}}),
     ],
 )
 def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, name, options):
@@ -156,12 +184,7 @@ def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, na
 
 
 def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
-    path = write_movie(tmp_path / "a.mkv", codec="ffv1")
-    content = bytearray(path.read_bytes())
-    with av.open(str(path)) as container:
-        place = [packet.pos for packet in container.demux(video=0) if packet.size][3]
-    content[place - 20 : place + 20] = bytes(40)
-    path.write_bytes(content)
+    path = damage(write_movie(tmp_path / "a.mkv", codec="ffv1"), 4, end=0.01, before=20)
     assert refusal(path) == "movie_undecodable"
 
 
@@ -243,7 +266,7 @@ def test_a_pipe_is_not_opened(tmp_path):
         os.close(writer)
 
 
-def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
+def test_damaged_movies_and_sound_are_refused(movie, tmp_path):
     (tmp_path / "cut short.mp4").write_bytes(movie.read_bytes()[:2000])
     assert refusal(tmp_path / "cut short.mp4") == "movie_undecodable"
     with av.open(str(tmp_path / "a.wav"), "w") as container:
@@ -253,8 +276,19 @@ def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
         sound.rate = 8000
         container.mux(stream.encode(sound))
     assert refusal(tmp_path / "a.wav") == "no_video"
-    monkeypatch.setattr("crfnet.movies.stream.MAX_PIXELS", 100)
-    assert refusal(movie) == "plate_too_large"
+
+
+@pytest.mark.parametrize(
+    ("name", "codec", "form"),
+    [("a.mp4", "libx264", "yuv420p"), ("a.mov", "png", "rgb24"), ("a.mkv", "ffv1", "yuv420p")],
+)
+def test_a_movie_of_too_large_frames_is_refused_before_one_is_decoded(tmp_path, monkeypatch, name, codec, form):
+    """FFmpeg itself decodes some to learn their form."""
+    path = write_movie(tmp_path / name, codec=codec, form=form)
+    read_stream(path)
+    monkeypatch.setattr("crfnet.movies.library.MOST_PIXELS", 128 * 96 - 1)
+    monkeypatch.setattr("crfnet.movies.stream.decoded_packet", None)
+    assert refusal(path) == "movie_too_large"
 
 
 def test_opening_a_movie_of_many_empty_boxes_ends(movie, monkeypatch):

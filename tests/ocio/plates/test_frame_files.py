@@ -21,14 +21,6 @@ def write_exr(path, values, names, **attributes):
     return write_image(path, values.astype(np.float32), names=names, **attributes)
 
 
-def test_encoded_exr_keeps_its_values(tmp_path):
-    values = np.array([[[-0.5, 0.25, 1.5], [0, 1, 2]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B")), is_encoded=True)
-    assert frame.samples.dtype == np.float32
-    assert frame.alpha is None
-    np.testing.assert_array_equal(frame.samples, values)
-
-
 def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
     values = np.array([[[0.25, 0.5, 0, 0.5], [3, 2, 1, 0], [0.1, 0.2, 0.3, 1]]])
     frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "A")), is_encoded=True)

@@ -45,16 +45,33 @@ def test_an_absent_folder_is_refused(tmp_path):
     assert refusal(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT) == "folder_absent"
 
 
-def test_a_finished_plate_of_another_size_is_that_of_another_plate(tmp_path, out):
-    linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
-    before, (height, width) = tree(out), SMALL.shape[:2]
-    other = write_image(tmp_path / "b.png", SMALL[:, 1:, :3])
-    difference = f"{width} x {height} pixels, not {width - 1} x {height}"
-    with refused(PlateError, "finished_differs", difference=difference):
-        linearize(other, out / "a.exr", LUT)
-    assert tree(out) == before
-    linearize(other, out / "a.exr", LUT, overwrite=True)
-    assert tree(out) != before
+def foreign_exr(path):
+    write_image(path, SMALL[..., :3].astype(np.float32))
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda path: path.write_text("notes"), "finished_foreign"),
+        (lambda path: os.truncate(path, 0), "finished_foreign"),
+        (lambda path: os.truncate(path, path.stat().st_size - 1), "finished_foreign"),
+        (foreign_exr, "finished_foreign"),
+        (lambda path: linearize(path.parent / "a.0003.png", path, LUT, overwrite=True), "finished_differs"),
+    ],
+)
+@pytest.mark.parametrize(("name", "target"), [("a.0002.png", "a.exr"), ("a.####.png", "a.0002.exr")])
+def test_a_target_that_is_not_the_whole_linear_frame_of_its_plate_is_refused(tmp_path, name, target, change, code):
+    """A user would take it for one; `test_cli_exposure` has other settings."""
+    write_sequence(tmp_path, (1, 2, 3), name="a.{:04d}.png")
+    plates, target, out = tmp_path / name, tmp_path / target, tmp_path / target.replace("0002", "####")
+    linearize(plates, out, LUT)
+    assert linearize(plates, out, LUT).written == ()
+    change(target)
+    before = tree(tmp_path)
+    with refused(PlateError, code, path=target):
+        linearize(plates, out, LUT)
+    assert tree(tmp_path) == before
+    assert target in linearize(plates, out, LUT, overwrite=True).written
 
 
 @pytest.mark.parametrize(
@@ -105,13 +122,13 @@ def test_a_full_disk_is_named(tmp_path):
 
 def test_a_file_whose_end_is_lost_is_refused(tmp_path, monkeypatch):
     """As on a full disk: OpenEXR reports no error of its last writes."""
-    is_whole = exr._is_whole
+    is_whole = exr.is_whole
 
     def lose(path, header):
         os.truncate(path, path.stat().st_size - 1)
         return is_whole(path, header)
 
-    monkeypatch.setattr(exr, "_is_whole", lose)
+    monkeypatch.setattr(exr, "is_whole", lose)
     spec = oiio.ImageSpec(90, 70, 4, "half")
     spec.attribute("compression", "zips")
     with refused(PlateError, "exr_not_written"):

@@ -55,20 +55,6 @@ def test_workers_change_nothing(tmp_path, out, workers):
     assert tree(out) == tree(expected)
 
 
-def test_finished_frames_are_left_alone(tmp_path, out):
-    pattern = write_sequence(tmp_path, range(4))
-    linearize(pattern, out / "a.%d.exr", LUT)
-    complete = tree(out)
-    (out / "a.2.exr").unlink()
-    (out / "a.3.exr").write_bytes(b"finished elsewhere")
-    calls = []
-    report = linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
-    assert report.written == (out / "a.2.exr",)
-    assert report.skipped == (out / "a.0.exr", out / "a.1.exr", out / "a.3.exr")
-    assert calls == [(3, 4), (4, 4)]
-    assert tree(out) == complete | {"a.3.exr": b"finished elsewhere"}
-
-
 def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 3, 5, 9))
     for number in (2, 3):
@@ -128,13 +114,3 @@ def test_an_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, st
     assert set(report.skipped) == set(finished)
     assert len(report.written) == total - len(finished)
     np.testing.assert_array_equal(read_exr(report.written[-1])[0], expected)
-
-
-def test_a_failing_callback_stops_the_run_cleanly(tmp_path, out):
-    def stop(done, total):
-        if done == 1:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        linearize(write_sequence(tmp_path, range(40)), out / "a.%d.exr", LUT, workers=1, progress=stop)
-    assert 1 <= len(list(out.glob("a.*.exr"))) == len(listed(out)) < 40

@@ -2,9 +2,13 @@
 
 import threading
 from contextlib import closing
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from crfnet.plates import linear
+from crfnet.plates.frame_files import EncodedFrame, FirstFrame
 from crfnet.plates.linear import finished
 
 
@@ -35,3 +39,10 @@ def test_closing_finishes_what_has_begun_and_drops_the_rest():
         go.set()
     assert len(begun) < 8
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("plate")]
+
+
+def test_of_large_frames_fewer_are_in_memory(monkeypatch):
+    monkeypatch.setattr(linear, "cores", lambda: 16)
+    sizes = [np.broadcast_to(np.uint8(0), (side, side, 3)) for side in (4000, 8000, 16000)]
+    frames = [EncodedFrame(samples, 255, None, None) for samples in sizes]
+    assert [linear._workers(FirstFrame(0, Path(), frame)) for frame in frames] == [8, 3, 1]
