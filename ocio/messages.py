@@ -34,7 +34,7 @@ SENTENCES: Mapping[str, str] = {
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
     "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
     " as in plate.%04d.exr",
-    "no_such_frames": "{path}: there are {frames}; check the name and the frames",
+    "no_such_frames": "{path}: the frames that exist are {frames}; check the name and the frames",
     "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
     " plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",

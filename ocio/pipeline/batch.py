@@ -111,7 +111,7 @@ class Task:
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
-            summary=f"{self.photo.name}: linear",
+            summary=f"{self.photo.name}: linearized",
         )
         if estimate is None:
             return record

@@ -55,13 +55,13 @@ def test_the_lines_of_an_estimate(estimate):
     *lines, windows = report.verdict_lines(estimate())
     assert lines == [
         "The estimate is usable: look at the linear plate before you rely on it.",
-        "Expect the shape of the linear light to be off by 0.10 stop (RMS between codes 16 and 240) and the curve by"
-        " 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 0.7 stop and 10 %.",
+        "Expected error: 0.10 stop in the linear light once the exposure is matched (RMS, codes 16 to 240), 3.9 % of"
+        " the brightness range (E_est 1.25) in the curve; gamma 2.2 usually has 0.7 stop and 12 %.",
         words.RANK.format(WHITE_ERROR),
         "Most likely a camera's own rendering, 93 %.",
-        "Prior: camera; file metadata used: taken by Canon EOS 20D, a camera with interchangeable lenses.",
+        "Prior: camera; metadata: taken by Canon EOS 20D, a camera with interchangeable lenses.",
     ]
-    assert windows.endswith(" of 2 windows agree.")
+    assert windows.endswith(" of 2 analyzed windows agree.")
 
 
 @pytest.mark.parametrize(
@@ -87,8 +87,8 @@ def test_warnings_come_last_also_in_the_line_for_lists(estimate):
 def test_luts_say_how_far_to_trust_them(estimate):
     assert report.provenance(estimate())[-2:] == (
         "Verdict: usable, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25)",
-        "Most likely a camera's own rendering, 93 %; prior: camera; file metadata used: taken by Canon EOS 20D,"
-        " a camera with interchangeable lenses",
+        "Most likely a camera's own rendering, 93 %. Prior: camera; metadata: taken by Canon EOS 20D, a camera with"
+        " interchangeable lenses",
     )
 
 
@@ -121,12 +121,12 @@ def test_who_says_what_took_the_photograph(estimate):
     unnamed = file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400))
     told = with_stated_device(unnamed, Device.PHONE)
     assert facts.basis(estimate(origins=(told,))) == (
-        "prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it: it has"
-        " 600 x 400 pixels"
+        "Prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it (600 x 400"
+        " pixels)"
     )
     bare = with_stated_device(file_origin(FileMetadata()), Device.COMPACT)
-    assert facts.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
-    assert facts.basis(estimate(origins=())) == "prior: camera; no file metadata used"
+    assert facts.basis(estimate(origins=(bare,))) == "Prior: camera; you say: taken with a compact camera"
+    assert facts.basis(estimate(origins=())) == "Prior: camera; no metadata used"
 
 
 def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
@@ -144,7 +144,7 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
     *lines, _ = report.verdict_lines(stored)
     assert lines == [
         "The estimate is usable: look at the linear plate before you rely on it.",
-        "Expect the curve to be off by 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 10 %.",
+        "Expected error: 3.9 % of the brightness range (E_est 1.25) in the curve; gamma 2.2 usually has 12 %.",
     ]
     assert report.provenance(stored)[-1] == "Verdict: usable, expected error 3.9 % of the brightness range (E_est 1.25)"
     assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")

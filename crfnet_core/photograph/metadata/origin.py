@@ -195,7 +195,7 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         before, now = (f"{width} x {height}" for width, height in (exif_size, size))
         yield f"scaled from {before} to {now} pixels after the camera wrote it"
     elif origin.is_scaled:
-        yield f"probably scaled after the camera wrote it: it has {size[0]} x {size[1]} pixels"
+        yield f"probably scaled after the camera wrote it ({size[0]} x {size[1]} pixels)"
     if metadata.is_turned:
         yield "turned upright, as the file asks"
     if origin.encoding:

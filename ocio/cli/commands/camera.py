@@ -32,9 +32,9 @@ def _list(arguments: argparse.Namespace) -> None:
     cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (user, shipped))
     document = {"folder": str(user.folder), "cameras": cameras, "shipped": others, "problems": user.problems()}
     lines = [
-        f"Yours, in {user.folder}:",
+        f"Your cameras, in {user.folder}:",
         *_indented(user),
-        "Measured, with crfnet:",
+        "Packaged cameras:",
         *_indented(shipped),
         *(f"note: {problem}" for problem in user.problems()),
     ]

@@ -71,8 +71,8 @@ def _response(
         inverted = [f"{response.path.name}: {response.words}; its inverse is used."] if response.was_forward else []
         return response.lut, None, inverted
     options = estimate_options(arguments)
-    estimate = pipeline.load_camera_response(options)
-    if estimate is None:
-        with progress_bar("windows") as progress:
-            estimate = pipeline.estimate_files([sequence], options, progress=progress).estimate
+    if stored := pipeline.load_camera_response(options):
+        return pipeline.response_lut(stored), stored, report.verdict_lines(stored)
+    with progress_bar("windows") as progress:
+        estimate = pipeline.estimate_files([sequence], options, progress=progress).estimate
     return pipeline.response_lut(estimate), estimate, [report.source_line(estimate), *report.verdict_lines(estimate)]

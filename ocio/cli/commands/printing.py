@@ -85,8 +85,8 @@ def lost_lines(plan: OutputPlan) -> list[str]:
     which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
     config = plan.files.config
     return [
-        f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
-        f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
+        f"Warning: {config.name} was replaced and no longer has {which}; a config with both is written by"
+        f" crfnet config add --base {shlex.quote(str(config))} --out FOLDER ESTIMATE, the JSON of the other."
     ]
 
 

@@ -18,7 +18,7 @@ FILES = {*(f"plate{suffix}" for suffix in WRITERS), "config.ocio", "plate_linear
 
 def test_says_what_it_read_found_and_wrote(crfnet, plate, fixed_model, tmp_path):
     out = crfnet("estimate", plate, "--out", tmp_path / "look", "--model", fixed_model).out
-    parts = ("plate.jpg: 672 x 378, 8 bits", "The estimate is ", "\nPrior: camera; file metadata used: ", "10 windows")
+    parts = ("plate.jpg: 672 x 378, 8 bits", "The estimate is ", "\nPrior: camera; metadata: ", "10 analyzed windows")
     assert all(part in out for part in (*parts, *FILES))
     assert set(listed(tmp_path / "look")) == FILES
 
@@ -84,7 +84,7 @@ def test_several_photographs_make_one_response(estimate, plate, tmp_path):
     out = estimate(plate, other).out
     names = set(listed(tmp_path / "out"))
     assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
-    assert " of 20 windows agree" in out
+    assert " of 20 analyzed windows agree" in out
 
 
 @pytest.mark.parametrize("name", ["a\\b.jpg", f"{'写' * 80}.jpg", "a$b%20#1.jpg", "q'u\"o.jpg", "[1,  2].jpg"])

@@ -23,7 +23,7 @@ def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
     done = crfnet(*arguments)
     assert done.code == 0
     assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
-    assert "\nPrior: camera; file metadata used: " in done.out
+    assert "\nPrior: camera; metadata: " in done.out
     pixels = [read_image(frames / f"l.{number:04d}.exr") for number in (1, 5)]
     np.testing.assert_array_equal(*pixels)
 
@@ -42,7 +42,7 @@ def test_goes_on_where_it_stopped(crfnet, look, frames):
 def test_says_what_was_left_alone(crfnet, look, plate, tmp_path):
     arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "a.exr")
     crfnet(*arguments)
-    assert "left alone (add --overwrite otherwise)" in crfnet(*arguments).out
+    assert "left alone (--overwrite replaces them)" in crfnet(*arguments).out
     *light, written = crfnet(*arguments, "--overwrite").out.splitlines()
     assert written == f"Written: {tmp_path / 'a.exr'}."
     assert [line.partition(":")[0] for line in light] == ["Primaries", "Exposure"]
