@@ -1,4 +1,4 @@
-"""A 1D LUT for each channel: what calibration from an exposure series gives, where R, G and B are measured apart."""
+"""A 1D LUT for each channel, as programs write that measure R, G and B apart."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -20,7 +20,7 @@ from ..luts.rgb_lut import AnyLut
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, plain_stem
 from ..plates.light import PlateLight
-from ..report import result_line
+from ..report.words import result_line
 from .estimates import load_camera_response, load_network, load_prior, response_lut
 from .photographs import unreadable_reason
 from .records import PhotographRecord, RecordFile

@@ -56,10 +56,10 @@ class EstimateBatch(Batch):
         """Estimate one photograph and write its files."""
         is_complete = all(path.exists() for path in task.targets)  # as a killed run leaves it before its record
         estimated = estimate_files([file_source(task.photo)], self.options)
-        light = estimated_light(estimated, self.plates, lut_length=self.outputs.lut_length)
+        light = estimated_light(estimated, self.plates)
         files = self.files(task.folder, task.stem)
         plates = replace(self.plates, overwrite=self.plates.overwrite or is_complete)
-        deliver_estimate(OutputPlan(files, plates, self.outputs.lut_length), estimated, light)
+        deliver_estimate(OutputPlan(files, plates), estimated, light)
         return task.record(light, estimated.estimate, lut=files.lut, linear=files.linear)
 
     def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:

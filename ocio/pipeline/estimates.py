@@ -19,7 +19,6 @@ from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Float32Array, Progress
 
-from ..defaults import LUT_LENGTH
 from ..errors import PlateError
 from ..luts.lut1d import Lut1D, inverse_response_lut
 from ..movies.library import is_movie
@@ -27,7 +26,7 @@ from ..movies.source import PlateSource, file_source, movie_of, photographs_of
 from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
-from ..report import PhotoFacts, provenance
+from ..report.facts import PhotoFacts, provenance
 from .photographs import is_folder, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -150,9 +149,9 @@ def _cut_photographs(
             yield cut_photograph(photo, options), facts, position
 
 
-def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
-    """Return the inverse of an estimated response as a LUT with its provenance: LutError unless 2 to 65536 long."""
-    return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))
+def response_lut(estimate: ResponseEstimate) -> Lut1D:
+    """Return the inverse of an estimated response as a LUT with its provenance."""
+    return inverse_response_lut(estimate.curve, comments=provenance(estimate))
 
 
 def load_network(options: EstimateOptions) -> ResponseNetwork:

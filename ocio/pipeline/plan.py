@@ -19,15 +19,14 @@ class OutputPlan:
 
     files: OutputFiles
     plates: PlateOptions  # how linear plates are written; `overwrite` holds for every file
-    lut_length: int  # entries of the LUTs; 0 if none are written
     space: PlateColorSpace | None = None  # without its exposure and primaries; None without a config
     lost_color_spaces: tuple[str, ...] = ()  # of other plates, in a config that is replaced
 
     @property
     def targets(self) -> tuple[Path, ...]:
         """The LUTs, the config and the linear plates."""
-        luts = (*self.files.luts, *self.files.forward) if self.lut_length else ()
-        return (*luts, *([self.files.config] if self.space else ()), *self.files.linear)
+        config = [self.files.config] if self.space else []
+        return (*self.files.luts, *self.files.forward, *config, *self.files.linear)
 
 
 def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
@@ -41,12 +40,10 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     for target, photo in zip(files.linear, photos, strict=False):  # without linear plates, no pairs
         if (other := owners.setdefault(target.name.casefold(), photo)) != photo:
             raise PlateError("one_name", first=other, second=photo, name=target.name)
-    return plan_files(files, photos, plates, PlateColorSpace.from_outputs(files, photos[0]), outputs.lut_length)
+    return plan_files(files, photos, plates, PlateColorSpace.from_outputs(files, photos[0]))
 
 
-def plan_files(
-    files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace, lut_length: int
-) -> OutputPlan:
+def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace) -> OutputPlan:
     """Return the plan of files with a config, after checking that they can be written; create nothing.
 
     Raise PlateError as `check_targets`; ConfigError if the color space cannot be in a config.
@@ -54,7 +51,7 @@ def plan_files(
     targets, configs = files.unshared, [files.config]
     check_targets(files.report.parent, targets, photos=photos, configs=configs, overwrite=plates.overwrite)
     portable_config([space])
-    return OutputPlan(files, plates, lut_length, space, _other_spaces(files))
+    return OutputPlan(files, plates, space, _other_spaces(files))
 
 
 def _other_spaces(files: OutputFiles) -> tuple[str, ...]:

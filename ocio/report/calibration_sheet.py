@@ -14,7 +14,7 @@ from crfnet_core.calibration import PairCalibration
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
-from . import Measured, calibration_lines
+from .calibration import Measured, calibration_lines
 from .sheet import (
     BOTTOM,
     CURVE,

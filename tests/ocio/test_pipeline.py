@@ -11,7 +11,6 @@ import pytest
 from crfnet import pipeline
 from crfnet.cli.main import main
 from crfnet.configs.plate_color_space import PlateColorSpace
-from crfnet.defaults import LUT_LENGTH
 from crfnet.errors import PlateError
 from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
@@ -75,7 +74,7 @@ class TestExport:
         outputs = OutputOptions(has_sheet=False, has_linear=False)
         files = OutputFiles.named(folder, [Path("plate.png")], outputs)
         space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
-        return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), LUT_LENGTH, space)
+        return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), space)
 
     def test_writes_the_lut_in_three_formats_and_a_config(self, plan):
         written = pipeline.deliver(plan, light_of(LUT, exposure=1))

@@ -6,8 +6,10 @@ from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.library import Camera, CameraLibrary, camera_document, camera_estimate, find_camera, read_calibration
 
-from ... import pipeline, report
+from ... import pipeline
 from ...luts.files import write_lut
+from ...report import words
+from ...report.documents import camera_summary
 from .printing import print_lines, print_result
 
 
@@ -29,7 +31,7 @@ def _add(arguments: argparse.Namespace) -> None:
 def _list(arguments: argparse.Namespace) -> None:
     """List the user's cameras, and the ones that come with this project."""
     user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (user, shipped))
+    cameras, others = (list(map(camera_summary, library.cameras())) for library in (user, shipped))
     document = {"folder": str(user.folder), "cameras": cameras, "shipped": others, "problems": user.problems()}
     lines = [
         f"Your cameras, in {user.folder}:",
@@ -67,10 +69,10 @@ def _export(arguments: argparse.Namespace) -> None:
 def _print_camera(camera: Camera, *, as_json: bool) -> None:
     """Print a camera and how good its response is."""
     estimate = camera_estimate(camera)
-    document = report.camera_summary(camera) | {"estimate": estimate.to_dict()}
-    print_result(document, [report.camera_line(camera), *report.verdict_lines(estimate)], as_json=as_json)
+    document = camera_summary(camera) | {"estimate": estimate.to_dict()}
+    print_result(document, [words.camera_line(camera), *words.verdict_lines(estimate)], as_json=as_json)
 
 
 def _indented(library: CameraLibrary) -> list[str]:
     """Return the cameras of a library, one line each."""
-    return [f"  {report.camera_line(camera)}" for camera in library.cameras()] or ["  none"]
+    return [f"  {words.camera_line(camera)}" for camera in library.cameras()] or ["  none"]
