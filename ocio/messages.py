@@ -27,13 +27,12 @@ SENTENCES: Mapping[str, str] = {
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
-    "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
+    "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
-    "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
-    " as in plate.%04d.exr",
+    "no_placeholder": "{path}: is one name for {count} frames; give a name with a placeholder, such as plate.%04d.exr",
     "no_such_frames": "{path}: the frames that exist are {frames}; check the name and the frames",
     "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
     " plate.####.png",
@@ -54,7 +53,7 @@ SENTENCES: Mapping[str, str] = {
     # exr
     "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts
-    "gray_is_black": "a brightness of {gray:g} is black in this response; anchor a brighter gray",
+    "gray_is_black": "a brightness of {gray:g} is black in this response; pick a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",

@@ -23,7 +23,7 @@ from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
 from .batch import Batch, Task
 from .delivery import deliver_estimate, estimated_light, with_light
-from .estimates import estimate_files, load_network, load_prior, response_lut
+from .estimates import check_network, estimate_files, response_lut
 from .plan import OutputPlan
 from .records import PhotographRecord
 
@@ -50,7 +50,8 @@ class EstimateBatch(Batch):
 
     def check(self) -> None:
         """Raise a CRFNetError if the camera, the prior or the network cannot be read."""
-        self.response(), load_prior(self.options), load_network(self.options)
+        self.response()
+        check_network(self.options)
 
     def done(self, task: Task) -> PhotographRecord:
         """Estimate one photograph and write its files."""

@@ -125,7 +125,7 @@ def estimate_files(
         window, or a file has a published curve.
     """
     camera = load_camera(options)  # first, so that a wrong name is refused at once
-    prior, network = load_prior(options), load_network(options)
+    prior, network = Prior.load(options.prior), load_network(options.model, options.threads)
     analyzed = list(_cut_photographs(sources, options.analysis))
     cut, photographs, positions = zip(*analyzed, strict=True) if analyzed else ((), (), ())
     estimate = estimate_response(cut, network=network, prior=prior, progress=progress)
@@ -154,14 +154,16 @@ def response_lut(estimate: ResponseEstimate) -> Lut1D:
     return inverse_response_lut(estimate.curve, comments=provenance(estimate))
 
 
-def load_network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network that the options name; the last one stays loaded."""
-    return _network(options.model, options.threads)
+@lru_cache(maxsize=1)
+def load_network(model: Path | None, threads: int) -> ResponseNetwork:
+    """Return a network, as in `EstimateOptions`; the last one stays loaded."""
+    return ResponseNetwork.load(model, threads=threads)
 
 
-def load_prior(options: EstimateOptions) -> Prior:
-    """Return the prior that the options name, whose file may change while a process lives."""
-    return Prior.load(options.prior)
+def check_network(options: EstimateOptions) -> None:
+    """Raise a CRFNetError if the prior or the network cannot be read."""
+    Prior.load(options.prior)
+    load_network(options.model, options.threads)
 
 
 def load_camera(options: EstimateOptions) -> Camera | None:
@@ -173,9 +175,3 @@ def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
     """Return the response of that camera, for photographs that nobody looks at; None without one."""
     camera = load_camera(options)
     return None if camera is None else camera_estimate(camera)
-
-
-@lru_cache(maxsize=1)
-def _network(model: Path | None, threads: int) -> ResponseNetwork:
-    """Return a network."""
-    return ResponseNetwork.load(model, threads=threads)

@@ -111,17 +111,19 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     """Draw the response with its band, and gamma 2.2."""
     irradiance = np.linspace(0, 1, SAMPLES)
     lower, upper = estimate.band
-    gamma = ResponseCurve.gamma().brightness
-    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
-    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
     axes.plot(irradiance, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
-    axes.set(
-        xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="Irradiance (scene-linear, relative)", ylabel="Brightness"
-    )
+    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
+    complete_curve(axes)
+
+
+def complete_curve(axes: Axes) -> None:
+    """Add gamma 2.2, below the other lines, and the scales and the legend to the drawing of a response."""
+    irradiance, gamma = np.linspace(0, 1, SAMPLES), ResponseCurve.gamma().brightness
+    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), zorder=1.5, label="gamma 2.2")
+    axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
+    axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
+    axes.legend(loc="lower right", frameon=False, fontsize=10)
     plain(axes)
-    handles, labels = axes.get_legend_handles_labels()
-    order = [2, 0, 1]
-    axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower right", frameon=False, fontsize=10)
 
 
 def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:

@@ -4,21 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from .parts import (
-    OVERWRITE,
-    Commands,
-    Parser,
-    add_action,
-    add_command,
-    add_flag,
-    add_frames,
-    add_json,
-    add_network,
-    add_out,
-    add_plate,
-    add_text,
-    written_path,
-)
+from . import parts
+from .parts import Commands, Parser, written_path
 
 #: The help of --no-sheet.
 NO_SHEET = "do not draw the sheet, the picture of the result"
@@ -116,89 +103,88 @@ def build_parser() -> argparse.ArgumentParser:
 def _add_estimate(commands: Commands) -> None:
     """Add `crfnet estimate`."""
     summary = "estimate the response of the camera that took a photograph"
-    parser = add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
+    parser = parts.add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
     photos = "photograph, movie, or sequence such as shot.%%04d.png"
     parser.add_argument("photos", nargs="+", type=Path, metavar="PHOTO", help=photos)
-    add_out(parser, "DIR", "folder for all files")
-    add_frames(parser, "estimate one response for each photograph, not one for all; PHOTO may be a folder")
-    add_flag(parser, "--forward", "also write the response itself as a LUT, from light to code values")
-    add_flag(parser, "--no-sheet", NO_SHEET)
-    add_flag(parser, "--no-linear", "do not write linear EXR files")
-    add_network(parser)
-    add_plate(parser)
+    parts.add_out(parser, "DIR", "folder for all files")
+    parts.add_frames(parser, "estimate one response for each photograph, not one for all; PHOTO may be a folder")
+    parts.add_flag(parser, "--forward", "also write the response itself as a LUT, from light to code values")
+    parts.add_flag(parser, "--no-sheet", NO_SHEET)
+    parts.add_flag(parser, "--no-linear", "do not write linear EXR files")
+    parts.add_network(parser)
+    parts.add_plate(parser)
 
 
 def _add_linearize(commands: Commands) -> None:
     """Add `crfnet linearize`."""
-    parser = add_command(commands, "linearize", "write plates, sequences or movies as linear EXR", LINEARIZE_EXAMPLES)
+    summary = "write plates, sequences or movies as linear EXR"
+    parser = parts.add_command(commands, "linearize", summary, LINEARIZE_EXAMPLES)
     plates = "photograph, movie, folder with one sequence, or sequence such as shot.%%04d.png or shot.####.png"
     each = "; with --each photographs and folders"
     parser.add_argument("plates", nargs="+", metavar="PLATES", help=plates + each)
-    add_out(parser, "PATTERN", "EXR file, or for a sequence a name such as linear.%%04d.exr; with --each a folder")
+    parts.add_out(parser, "PATTERN", "EXR file; for a sequence a name such as l.%%04d.exr; with --each a folder")
     lut = "response to use: a 1D LUT of any format that OpenColorIO reads"
     parser.add_argument("--lut", type=Path, metavar="FILE", help=lut)
-    add_frames(parser, "PLATES are photographs, not a sequence; without --lut and --camera each has its own response")
-    add_flag(
-        parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values, not linear ones"
-    )
-    add_network(parser)
-    add_plate(parser)
+    parts.add_frames(parser, "PLATES are photographs, each with its own response without --lut and --camera")
+    parts.add_flag(parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values")
+    parts.add_network(parser)
+    parts.add_plate(parser)
 
 
 def _add_calibrate(commands: Commands) -> None:
     """Add `crfnet calibrate`."""
     summary = "measure a camera's response from an exposure stack, or from raw files and their JPEGs"
-    parser = add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
+    parser = parts.add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
     files = "frames of a stack; or raw files, their JPEGs, folders of both"
     parser.add_argument("photos", nargs="+", type=Path, metavar="FILE", help=files)
-    add_out(parser, "DIR", "folder for all files")
-    add_text(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
-    add_text(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: from EXIF)")
+    parts.add_out(parser, "DIR", "folder for all files")
+    parts.add_text(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
+    parts.add_text(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: EXIF)")
     compare = "response to compare with the measured one: the JSON of an estimate, or a LUT"
     parser.add_argument("--compare", type=Path, metavar="FILE", help=compare)
-    add_flag(parser, "--accept-edited", "accept files that a program has edited; the response is then that program's")
-    add_flag(parser, "--no-sheet", NO_SHEET)
-    add_flag(parser, "--overwrite", OVERWRITE)
-    add_json(parser)
+    parts.add_flag(parser, "--accept-edited", "accept files that a program has edited: the response is the program's")
+    parts.add_flag(parser, "--no-sheet", NO_SHEET)
+    parts.add_flag(parser, "--overwrite", parts.OVERWRITE)
+    parts.add_json(parser)
 
 
 def _add_camera(commands: Commands) -> None:
     """Add `crfnet camera` and its five actions."""
     summary = "store measured responses of cameras, to use them with --camera"
-    parser = add_command(commands, "camera", summary, CAMERA_EXAMPLES)
+    parser = parts.add_command(commands, "camera", summary, CAMERA_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
-    addition = add_action(actions, "add", "store a measured response")
+    addition = parts.add_action(actions, "add", "store a measured response")
     calibration = "the JSON file of crfnet calibrate"
     addition.add_argument("--from-calibration", type=Path, required=True, metavar="FILE", help=calibration)
-    add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
-    add_flag(addition, "--overwrite", "replace the camera of this name")
-    add_action(actions, "list", "list your cameras and the packaged ones")
-    show = add_action(actions, "show", "show a camera and the uncertainty of its response")
-    remove = add_action(actions, "remove", "remove one of your cameras")
-    export = add_action(actions, "export", "write the response of a camera to a file")
+    parts.add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
+    parts.add_flag(addition, "--overwrite", "replace the camera of this name")
+    parts.add_action(actions, "list", "list your cameras and the packaged ones")
+    show = parts.add_action(actions, "show", "show a camera and the uncertainty of its response")
+    remove = parts.add_action(actions, "remove", "remove one of your cameras")
+    export = parts.add_action(actions, "export", "write the response of a camera to a file")
     for action in (show, remove, export):
         action.add_argument("name", metavar="NAME", help="the camera")
     export.add_argument("out", type=written_path, metavar="OUT", help="a LUT file, or .json to hand the camera on")
-    add_flag(export, "--overwrite", OVERWRITE)
+    parts.add_flag(export, "--overwrite", parts.OVERWRITE)
 
 
 def _add_config(commands: Commands) -> None:
     """Add `crfnet config` and its two actions."""
     summary = "add the color spaces of plates to a copy of an OpenColorIO config"
-    parser = add_command(commands, "config", summary, CONFIG_EXAMPLES)
+    parser = parts.add_command(commands, "config", summary, CONFIG_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
-    addition = add_action(actions, "add", "write a new config: CONFIG with the color spaces of plates")
+    addition = parts.add_action(actions, "add", "write a new config: CONFIG with the color spaces of plates")
     looks = "folder, JSON or LUT of crfnet estimate"
     addition.add_argument("looks", nargs="+", type=Path, metavar="ESTIMATE", help=looks)
     addition.add_argument("--base", required=True, metavar="CONFIG", help="config to build on; it is not changed")
-    add_out(addition, "FOLDER", "folder for config.ocio and the LUTs")
-    add_flag(addition, "--overwrite", OVERWRITE)
-    listing = add_action(actions, "list", "list the plates of a config")
+    parts.add_out(addition, "FOLDER", "folder for config.ocio and the LUTs")
+    parts.add_flag(addition, "--overwrite", parts.OVERWRITE)
+    listing = parts.add_action(actions, "list", "list the plates of a config")
     listing.add_argument("config", metavar="CONFIG", help="config with plates")
 
 
 def _add_info(commands: Commands) -> None:
     """Add `crfnet info`."""
-    parser = add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
+    parser = parts.add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
     parser.add_argument("lut", type=Path, metavar="FILE", help="LUT that OpenColorIO reads")
-    add_json(parser)
+    parts.add_json(parser)

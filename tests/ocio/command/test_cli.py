@@ -9,7 +9,7 @@ import pytest
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS
 
-COMMANDS = ("estimate", "linearize", "info")
+COMMANDS = ("estimate", "linearize", "calibrate", "camera", "config", "info")
 
 
 class TestHelp:

@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet.luts.files import read_lut
 from tests.helpers.images import read_image
-
-
-def test_linearize_equals_numpy(linear, look, plate, tolerance):
-    codes = read_image(plate, kind="uint8")
-    table = read_lut(look / "plate.spi1d").apply(np.arange(256) / 255)
-    np.testing.assert_allclose(linear, table[codes], atol=tolerance.lut)
 
 
 def test_linearize_equals_the_plate_of_estimate(linear, look):
