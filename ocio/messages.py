@@ -102,7 +102,6 @@ SENTENCES: Mapping[str, str] = {
     "lut_without_inverse_response": "{path}: {reason}",
     "nameless_color_space": "a color space needs a name, found an empty one",
     "not_a_look": "{path}: is not the document of an estimate; give its folder, its JSON or a LUT",
-    "output_exists": "{path}: exists already; choose another folder or ask to overwrite it",
     "role_absent": "{path}: has no role {role}; use another config",
     # pipeline: which files there are, and whether they may be written
     "empty_folder": "{path}: the folder holds no photograph ({suffixes}) outside the output folder; check the name",

@@ -211,7 +211,7 @@ class TestFolder:
     def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
         (tmp_path / "show").mkdir()
         (tmp_path / "show" / name).write_text("mine")
-        with refused(ConfigError, "output_exists"):
+        with refused(PlateError, "file_exists"):
             add(STUDIO, tmp_path / "show", small_look)
         assert listed(tmp_path / "show") == [name]
         add(STUDIO, tmp_path / "show", small_look, overwrite=True)
