@@ -89,7 +89,7 @@ def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     lines = (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
         f"Photographs: {', '.join(estimate.photos)}" if estimate.photos else "",
-        f"Model: {estimate.model}" if estimate.model else "",
+        f"Model: {estimate.model}" if estimate.model and not estimate.camera else "",
         f"Verdict: {estimate.verdict}, expected error {expected_errors(estimate)}",
         ". ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
     )

@@ -53,7 +53,7 @@ def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> lis
         *([RANK.format(WHITE_ERROR)] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on}."] if rests_on else []),
-        *([f"{agreeing(estimate)}."] if estimate.windows else []),
+        *([f"{agreeing(estimate)}."] if estimate.windows and not estimate.camera else []),
         *(f"Warning: {warning}." for warning in estimate.warnings),
     ]
 

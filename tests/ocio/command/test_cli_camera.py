@@ -83,6 +83,7 @@ def test_an_estimate_uses_a_camera_that_is_asked_for(run, measured, photos, tmp_
     lut = read_lut(tmp_path / "look" / "IMG_0.spi1d")
     assert estimation_error(response_of_lut(lut), measured.curve) < 0.01
     assert any('camera "measured"' in comment for comment in lut.comments)
+    assert not any(words in text for text in (out, *lut.comments) for words in ("windows agree", "Model: "))
     document = json.loads((tmp_path / "look" / "IMG_0.json").read_text(encoding="utf-8"))
     assert document["camera"]["name"] == "measured"
     assert "known_cameras" not in document
