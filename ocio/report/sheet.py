@@ -26,7 +26,7 @@ from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
-from .facts import agreeing, basis, curve_error_words, shape_error_words
+from .facts import agreeing, basis, expected_errors
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -96,9 +96,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
     color = VERDICT_INK[estimate.verdict]
     verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
-    shape, kind = shape_error_words(estimate), estimate.likely_kind
-    figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error_words(estimate)}"]
-    result = DOT.join(map(str, filter(None, [*figures, kind])))
+    result = DOT.join(map(str, filter(None, [f"expected error {expected_errors(estimate)}", estimate.likely_kind])))
     place: dict[str, Any] = {"xytext": (12, 0), "textcoords": "offset points", "va": "center"}
     figure.add_artist(Annotation(result, xy=(1, 0.5), xycoords=verdict, color=INK, **place))
     figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
