@@ -41,7 +41,7 @@ def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLigh
     cannot be written, or a photograph has changed or gone.
     """
     files = plan.files
-    document = estimate_document(estimated.estimate, [facts.report for facts in estimated.photographs], files, light)
+    document = estimate_document(estimated.estimate, [facts.entry for facts in estimated.photographs], files, light)
     document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
     more: dict[Path, Callable[[Path], None]] = {

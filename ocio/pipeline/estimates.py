@@ -26,7 +26,7 @@ from ..movies.source import PlateSource, file_source, movie_of, photographs_of
 from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
-from ..report.facts import PhotoFacts, provenance
+from ..report.facts import PhotoEntry, provenance
 from .photographs import is_folder, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -37,7 +37,7 @@ PREVIEW_SIDE = 960
 class PhotographFacts:
     """The facts about an analyzed photograph that its files need once its pixels are gone."""
 
-    report: PhotoFacts
+    entry: PhotoEntry  # of the document
     tags: ColorTags  # its primaries, as the file names them
     plate: PlateSource  # the file, or the frame of a movie
     preview: Float32Array  # every `stride`-th pixel, (h, w, 3), in [0, 1]; empty except of the first photograph
@@ -46,9 +46,10 @@ class PhotographFacts:
     @classmethod
     def from_photo(cls, photo: Photo, plate: PlateSource, *, has_preview: bool) -> PhotographFacts:
         """Return the facts about a photograph of a plate."""
-        metadata, stride = photo.metadata, max(1, -(-max(photo.shape[:2]) // PREVIEW_SIDE))
+        (height, width), metadata = photo.shape[:2], photo.metadata
+        stride, has_gain_map = max(1, -(-max(height, width) // PREVIEW_SIDE)), bool(metadata and metadata.has_gain_map)
         return cls(
-            report=PhotoFacts.from_photo(photo),
+            entry=PhotoEntry(photo.path.name, width, height, photo.bit_depth, has_gain_map),
             tags=metadata.color if metadata else ColorTags(),
             plate=plate,
             preview=photo[::stride, ::stride].copy() if has_preview else photo[:0, :0].copy(),

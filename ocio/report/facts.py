@@ -1,33 +1,24 @@
 """Facts about photographs and estimates in words, for the command, JSON, LUT files and the sheet."""
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior.verdict import USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
 
 
 @dataclass(frozen=True)
-class PhotoFacts:
-    """The facts in the report about a photograph, once its pixels are gone."""
+class PhotoEntry:
+    """A photograph in the document of an estimate, and in words."""
 
     name: str
     width: int
     height: int
     bit_depth: int
     has_gain_map: bool = False  # so that the base picture was read
-
-    @classmethod
-    def from_photo(cls, photo: Photo) -> Self:
-        """Return the facts of a photograph."""
-        height, width = photo.shape[:2]
-        has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
-        return cls(photo.path.name, width, height, photo.bit_depth, has_gain_map)
 
     def __str__(self) -> str:
         """Return one line for people."""

@@ -46,7 +46,7 @@ def options(fixed_model):
 class TestEstimates:
     def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
         found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
-        assert [str(facts.report) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
+        assert [str(facts.entry) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
         assert (found.photographs[0].preview.shape, found.photographs[0].stride) == ((378, 672, 3), 1)
         assert found.photographs[1].preview.size == 0
 

@@ -53,7 +53,7 @@ def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: 
     """Return what was read, estimated and written, for people."""
     return [
         *estimated.movies,
-        *(str(photograph.report) for photograph in estimated.photographs),
+        *(str(photograph.entry) for photograph in estimated.photographs),
         *words.verdict_lines(estimated.estimate),
         *words.light_lines(document),
         *words.offer_lines(estimated.offers),
