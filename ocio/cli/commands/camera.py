@@ -10,7 +10,7 @@ from ... import pipeline
 from ...luts.files import write_lut
 from ...report import words
 from ...report.documents import camera_summary
-from .printing import print_lines, print_result
+from .printing import print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -23,9 +23,7 @@ def _add(arguments: argparse.Namespace) -> None:
     """Keep the measured response of a calibration."""
     camera = read_calibration(arguments.from_calibration, arguments.name)
     path = CameraLibrary.of_user().save(camera, overwrite=arguments.overwrite)
-    if not arguments.json:
-        print_lines([f"Written: {path}."])
-    _print_camera(camera, as_json=arguments.json)
+    _print_camera(camera, f"Written: {path}.", as_json=arguments.json)
 
 
 def _list(arguments: argparse.Namespace) -> None:
@@ -66,11 +64,11 @@ def _export(arguments: argparse.Namespace) -> None:
     print_result({"camera": camera.name, "written": str(out)}, [f"Written: {out}."], as_json=arguments.json)
 
 
-def _print_camera(camera: Camera, *, as_json: bool) -> None:
-    """Print a camera and how good its response is."""
+def _print_camera(camera: Camera, *first: str, as_json: bool) -> None:
+    """Print first lines, a camera, and how good its response is."""
     estimate = camera_estimate(camera)
     document = camera_summary(camera) | {"estimate": estimate.to_dict()}
-    print_result(document, [words.camera_line(camera), *words.verdict_lines(estimate)], as_json=as_json)
+    print_result(document, [*first, words.camera_line(camera), *words.verdict_lines(estimate)], as_json=as_json)
 
 
 def _indented(library: CameraLibrary) -> list[str]:

@@ -60,17 +60,12 @@ def _font_folder() -> str:
     return str(folder)
 
 
-def print_lines(lines: Iterable[str]) -> None:
-    """Print lines; every word of the command goes this way, but for JSON and errors."""
-    sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
-
-
 def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:
     """Print a JSON document, or the same in lines."""
     if as_json:
         sys.stdout.write(json_text(document))
     else:
-        print_lines(lines)
+        sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
 def lost_document(plan: OutputPlan) -> dict[str, Any]:
