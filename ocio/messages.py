@@ -79,7 +79,6 @@ SENTENCES: Mapping[str, str] = {
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",
     "color_space_refused": "{name}: cannot be added to the config ({reason})",
-    "config_absent": "{path}: does not exist; check the name",
     "config_aliases": "{path}: has more than {most} YAML aliases, each of which may multiply it; write them out",
     "config_archive": "{path}: is an archive; unpack it with OpenColorIO's ocioarchive and name the config in it",
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",

@@ -23,8 +23,10 @@ VERDICTS = {
     Verdict.DO_NOT_TRUST: "not to be trusted",
 }
 
-#: How much an estimate from photographs may claim; the number is the error of the place of white, in stops.
-RANK = "On real cameras white was off by {:.1f} stop. All these errors are averages: they hardly rank photographs."
+#: How much an estimate from photographs may claim.
+RANK = (
+    f"On real cameras white was off by {WHITE_ERROR:.1f} stop. These errors are averages and hardly rank photographs."
+)
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
 GRAY_TOLERANCE = 0.0005
@@ -50,7 +52,7 @@ def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> lis
     return [
         f"The {'response' if estimate.camera else 'estimate'} is {verdict}.",
         _expectation(estimate, phrases),
-        *([RANK.format(WHITE_ERROR)] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
+        *([RANK] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on}."] if rests_on else []),
         *([f"{agreeing(estimate)}."] if estimate.windows and not estimate.camera else []),

@@ -5,7 +5,6 @@ import math
 
 import pytest
 
-from crfnet.defaults import WHITE_ERROR
 from crfnet.report import facts, words
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
@@ -56,7 +55,7 @@ def test_the_lines_of_an_estimate(estimate):
         "The estimate is usable: look at the linear plate before you rely on it.",
         "Expected error: 0.10 stop in the linear light once the exposure is matched (RMS, codes 16 to 240), 3.9 % of"
         " the brightness range (E_est 1.25) in the curve; gamma 2.2 usually has 0.7 stop and 12 %.",
-        words.RANK.format(WHITE_ERROR),
+        words.RANK,
         "Most likely a camera's own rendering, 93 %.",
         "Prior: camera; metadata: taken by Canon EOS 20D, a camera with interchangeable lenses.",
     ]

@@ -77,7 +77,7 @@ def test_the_merge_line_of_the_documents_works(folder, root, tmp_path):
         ("add --base BASE --out OUT OUT", "not_a_look"),
         ("add --base LOOK --out LOOK LOOK --overwrite", "base_would_change"),
         ("add LOOK --out OUT", "usage"),
-        ("list nowhere.ocio", "config_absent"),
+        ("list nowhere.ocio", "no_such_file"),
         ("", "usage"),
     ],
 )

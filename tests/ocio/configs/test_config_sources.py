@@ -88,7 +88,7 @@ class TestBlender:
     [
         ("nowhere", "config_unknown"),
         ("ocio://nowhere", "config_not_built_in"),
-        ("nowhere.ocio", "config_absent"),
+        ("nowhere.ocio", "no_such_file"),
         ("a.ocioz", "config_archive"),
     ],
 )
