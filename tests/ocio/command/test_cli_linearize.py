@@ -1,8 +1,9 @@
-"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate."""
+"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate; oiiotool gives the same."""
 
 import json
 
 import numpy as np
+import pytest
 
 from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.forward import forward_lut
@@ -59,3 +60,25 @@ def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     assert np.abs(read_image(tmp_path / "a.exr") - read_image(tmp_path / "b.exr")).max() < 1e-4
     document = json.loads(crfnet("info", forward, "--json").out)
     assert (document["direction"], document["converts"]) == ("forward", ["irradiance", "brightness"])
+
+
+def test_linearize_equals_the_plate_of_estimate(linear, look):
+    np.testing.assert_array_equal(linear, read_image(look / "plate_linear.exr"))
+
+
+@pytest.mark.parametrize("suffix", ["spi1d", "cube", "clf"])
+def test_oiiotool_with_the_lut(linear, look, plate, oiiotool, tolerance, tmp_path, suffix):
+    out = tmp_path / "out.exr"
+    oiiotool(plate, "--ociofiletransform", look / f"plate.{suffix}", "-d", "float", "-o", out)
+    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
+
+
+@pytest.mark.parametrize(
+    ("rule", "convert"), [((), ("--colorconvert", "CRF plate", "scene_linear")), (("--autocc",), ())]
+)
+def test_oiiotool_with_the_config_and_with_its_file_rule(
+    linear, look, plate, oiiotool, tolerance, tmp_path, rule, convert
+):
+    out = tmp_path / "out.exr"
+    oiiotool("--colorconfig", look / "config.ocio", *rule, plate, *convert, "-d", "float", "-o", out)
+    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
