@@ -39,11 +39,11 @@ PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
 #: default); the plate's own primaries; and the spaces of ACES.
 OUTPUT_SPACES = ("scene_linear", "plate", "ACEScg", "ACES2065-1")
 
-#: Estimation error (E_est) that gamma 2.2 usually makes: 3.14 on the 201 curves of DoRF, 3.71 on 29 camera bodies (P4).
-GAMMA_ERROR = 3.3
+#: Estimation error (E_est) of gamma 2.2 on 29 camera bodies (P4).
+GAMMA_ERROR = 3.71
 
-#: Shape error in stops that gamma 2.2 usually makes: 0.74 on 29 camera bodies (P4).
+#: Shape error of gamma 2.2 on these bodies, in stops.
 GAMMA_SHAPE_ERROR = 0.74
 
-#: Root mean square over 43 camera bodies (P4, with caution) of the error of white's place in stops: the scale error.
+#: Error of the place of white, in stops: root mean square over 43 camera bodies (P4, with caution).
 WHITE_ERROR = 0.26

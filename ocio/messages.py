@@ -28,15 +28,14 @@ SENTENCES: Mapping[str, str] = {
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
-    "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
     "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
+    "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
-    "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
-    " as in plate.%04d.exr",
-    "no_such_frames": "{path}: there are {frames}; check the name and the frames",
+    "no_placeholder": "{path}: is one name for {count} frames; give a name with a placeholder, such as plate.%04d.exr",
+    "no_such_frames": "{path}: the frames that exist are {frames}; check the name and the frames",
     "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
     " plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
@@ -56,7 +55,7 @@ SENTENCES: Mapping[str, str] = {
     # exr
     "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts
-    "gray_is_black": "a brightness of {gray:g} is black in this response; anchor a brighter gray",
+    "gray_is_black": "a brightness of {gray:g} is black in this response; pick a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
@@ -83,7 +82,6 @@ SENTENCES: Mapping[str, str] = {
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",
     "color_space_refused": "{name}: cannot be added to the config ({reason})",
-    "config_absent": "{path}: does not exist; check the name",
     "config_aliases": "{path}: has more than {most} YAML aliases, each of which may multiply it; write them out",
     "config_archive": "{path}: is an archive; unpack it with OpenColorIO's ocioarchive and name the config in it",
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",
@@ -106,7 +104,6 @@ SENTENCES: Mapping[str, str] = {
     "lut_without_inverse_response": "{path}: {reason}",
     "nameless_color_space": "a color space needs a name, found an empty one",
     "not_a_look": "{path}: is not the document of an estimate; give its folder, its JSON or a LUT",
-    "output_exists": "{path}: exists already; choose another folder or ask to overwrite it",
     "role_absent": "{path}: has no role {role}; use another config",
     # pipeline: which files there are, and whether they may be written
     "empty_folder": "{path}: the folder holds no photograph ({suffixes}) outside the output folder; check the name",

@@ -6,7 +6,7 @@ from pathlib import Path
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.photograph.metadata import Device
 
-from .defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS
+from .defaults import DEPTHS, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +49,6 @@ class PlateOptions:
 class OutputOptions:
     """Which files an estimate has beside its LUTs, config and document."""
 
-    lut_length: int = LUT_LENGTH  # entries of the LUTs
     has_sheet: bool = True  # the picture, which needs matplotlib
     has_linear: bool = True  # the photographs as linear EXR
     has_forward: bool = False  # the response itself, from light to code values

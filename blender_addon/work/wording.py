@@ -56,7 +56,8 @@ class PanelText(NamedTuple):
 
 def panel_text(estimate: ResponseEstimate) -> PanelText:
     """Return the panel's sentences about an estimate."""
-    from crfnet.report import Phrases, verdict_advice, verdict_lines
+    from crfnet.report.facts import Phrases
+    from crfnet.report.words import verdict_advice, verdict_lines
 
     if is_loaded(estimate.uncertainty):
         return PanelText(details=f"The response is {estimate.model}: it is not an estimate, so it has no verdict.")

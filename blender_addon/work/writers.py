@@ -110,7 +110,7 @@ def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: 
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
-    plan = OutputPlan(replace(output_files(job.plate, folder), linear=targets), options, lut_length=0)
+    plan = OutputPlan(replace(output_files(job.plate, folder), luts=(), linear=targets), options)
     primaries = PlatePrimaries(REC709, "as the plate is tagged")
     light = PlateLight(lut, stops, primaries, linear_space(primaries))
     with frame_reader(job.plate) as read:

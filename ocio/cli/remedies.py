@@ -12,7 +12,7 @@ REMEDIES: Mapping[str, str] = {
     # calibration
     "exposures_gap": "--times states them in place of EXIF",
     "exposures_span": "--times states them in place of EXIF",
-    "frame_edited": "or add --accept-edited to measure what that program makes of them",
+    "frame_edited": "or add --accept-edited to measure the response of that program",
     "frame_mistimed": "--times states the times in place of EXIF",
     "frame_untimed": "add --times 1/60,1/30,...",
     # library
@@ -36,7 +36,7 @@ REMEDIES: Mapping[str, str] = {
     "movie_in_batch": "leave --each out",
     "one_name": "or add --no-linear",
     "other_options": "or add --overwrite",
-    "process_died": "photographs that are done are not done again, and --workers makes fewer processes",
+    "process_died": "finished photographs are kept, and --workers limits the processes",
 }
 
 #: The sentences of `CommandError`, by code.

@@ -18,7 +18,7 @@ from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
-from ..output_files import all_or_none, check_config_folder, distinct_names
+from ..output_files import all_or_none, check_targets, distinct_names
 from .file_rules import is_counter_name
 from .files import write_config
 from .looks import Look
@@ -55,7 +55,6 @@ def write_derived_config(
     exists and may not be replaced or cannot be written, or OpenColorIO refuses the config or converts otherwise than
     the LUTs.
     """
-    check_config_folder(folder)
     homes = [path.parent for path in (base.path, base.path and base.path.resolve()) if path]
     if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
@@ -65,8 +64,7 @@ def write_derived_config(
     check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
     files = (target, *(folder / name for name in luts))
-    if not overwrite and (existing := [path for path in files if os.path.lexists(path)]):
-        raise ConfigError("output_exists", path=existing[0])
+    check_targets(folder, files[1:], configs=[target], overwrite=overwrite)
     with all_or_none(files, overwrite=overwrite) as staged:
         for name, lut in luts.items():
             write_lut(staged / name, lut)

@@ -50,7 +50,7 @@ def load_config(path: str | Path) -> OCIO.Config:
     """
     path = Path(path)
     if not os.path.lexists(path):
-        raise ConfigError("config_absent", path=path)
+        raise ConfigError("no_such_file", path=path)
     try:
         text = read_bytes(path, most=MAX_CONFIG_SIZE).decode()
         if len(_ALIAS.findall(text.replace("\0", ""))) > MOST_ALIASES:  # in UTF-16, too

@@ -8,7 +8,7 @@ from crfnet_core.files import atomic_write_text
 
 from ..errors import LutError
 from .opencolorio import read_lut
-from .rgb_lut import AnyLut, table_rows
+from .rgb_lut import AnyLut, lut_identity, table_rows
 
 __all__ = ["WRITERS", "read_lut", "write_lut"]
 
@@ -42,7 +42,7 @@ def _clf_text(lut: AnyLut) -> str:
     """
     depth = 'inBitDepth="32f" outBitDepth="32f"'
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
-    lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{lut.identity}" compCLFversion="3.0">')
+    lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{lut_identity(lut)}" compCLFversion="3.0">')
     lines += [f"    <Description>{html.escape(comment, quote=False)}</Description>" for comment in lut.comments]
     if lut.domain != (0.0, 1.0):
         ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)

@@ -1,6 +1,5 @@
 """A one-dimensional lookup table: its values, its interpolation in both directions, and the inverse response."""
 
-import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Self
@@ -79,11 +78,6 @@ class Lut1D(EqualByFields):
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "domain", (low, high))
         object.__setattr__(self, "comments", clean_comments(self.comments))
-
-    @property
-    def identity(self) -> str:
-        """A name that depends on nothing but the table and its domain: a part of their SHA-256."""
-        return table_identity(self.domain, self.values)
 
     @property
     def channels(self) -> tuple[Self, ...]:
@@ -219,12 +213,6 @@ def strictly_increasing(values: ArrayLike) -> Float64Array:
     raised = np.minimum(raised, rank[-1] - steps[::-1])  # and never above the last entry, which stays
     pattern = np.where(raised == 0, 0, np.abs(raised) + BELOW_NORMAL).astype(np.int32)
     return np.asarray(np.copysign(pattern.view(np.float32), raised), dtype=np.float64)
-
-
-def table_identity(domain: tuple[float, float], values: Float64Array) -> str:
-    """Return a name that depends on nothing but a table and its domain: a part of their SHA-256."""
-    content = np.array([*domain, *values.ravel()], dtype="<f4").tobytes()
-    return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def clean_comments(comments: Iterable[str]) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ class ResponseFile:
     @property
     def words(self) -> str:
         """The format, the channels and the direction of the file in one line."""
-        channels = "one table" if isinstance(self.table, Lut1D) else "R, G and B apart"
+        channels = "one table" if isinstance(self.table, Lut1D) else "tables of R, G and B"
         direction = "from light to code values" if self.was_forward else "from code values to light"
         return f"LUT of the format {self.path.suffix.lower()}, {channels}, {direction}"
 

@@ -1,5 +1,6 @@
-"""A 1D LUT for each channel: what calibration from an exposure series gives, where R, G and B are measured apart."""
+"""A 1D LUT for each channel, as programs write that measure R, G and B apart."""
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from crfnet_core.types import Float64Array
 
 from ..errors import LutError
-from .lut1d import Lut1D, clean_comments, table_identity
+from .lut1d import Lut1D, clean_comments
 
 
 @dataclass(frozen=True)
@@ -40,11 +41,6 @@ class RgbLut1D:
         """The outputs, shape (N, 3)."""
         return np.stack([channel.values for channel in self.channels], axis=1)
 
-    @property
-    def identity(self) -> str:
-        """A name that depends on nothing but the tables and their domain: see `Lut1D.identity`."""
-        return table_identity(self.domain, self.values)
-
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
         inputs = np.asarray(pixels)
@@ -71,6 +67,12 @@ def lut_of_columns(
     if (table == table[:, :1]).all():
         return Lut1D(table[:, 0], domain, tuple(comments))
     return RgbLut1D(tuple(Lut1D(column, domain) for column in table.T), tuple(comments))
+
+
+def lut_identity(lut: AnyLut) -> str:
+    """Return a name that depends on nothing but the tables and their domain: a part of their SHA-256."""
+    content = np.array([*lut.domain, *lut.values.ravel()], dtype="<f4").tobytes()
+    return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:

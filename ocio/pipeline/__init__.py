@@ -23,8 +23,6 @@ from .estimates import (
     FileEstimate,
     estimate_files,
     load_camera_response,
-    load_network,
-    load_prior,
     photograph_sources,
     response_lut,
 )
@@ -35,5 +33,5 @@ from .run import run_batch
 
 __all__ = ["EstimateBatch", "FileEstimate", "LinearBatch", "OutputPlan", "PhotographRecord", "anchored_exposure"]
 __all__ += ["deliver", "deliver_estimate", "estimate_files", "estimated_light", "find_photographs", "is_pairs"]
-__all__ += ["load_camera_response", "load_network", "load_prior", "photograph_sources", "plan_calibration"]
+__all__ += ["load_camera_response", "photograph_sources", "plan_calibration"]
 __all__ += ["plan_outputs", "response_lut", "response_to_compare", "run_batch", "write_calibration"]

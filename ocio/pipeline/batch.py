@@ -17,12 +17,12 @@ from crfnet_core.files import cut_to_bytes
 
 from ..defaults import CONFIG_NAME
 from ..errors import PlateError
-from ..luts.rgb_lut import AnyLut
+from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, plain_stem
 from ..plates.light import PlateLight
-from ..report import result_line
-from .estimates import load_camera_response, load_network, load_prior, response_lut
+from ..report.words import result_line
+from .estimates import check_network, load_camera_response, response_lut
 from .photographs import unreadable_reason
 from .records import PhotographRecord, RecordFile
 
@@ -70,13 +70,13 @@ class Batch(ABC):
     def check(self) -> None:
         """Raise a CRFNetError if the response, the prior or the network cannot be read."""
         if not self.response():
-            load_prior(self.options), load_network(self.options)
+            check_network(self.options)
 
     def digest(self) -> str:
         """Return a digest of the common response and of the options that make two results differ."""
         choices, response = asdict(self), self.response()
         del choices["out"], choices["options"]["threads"], choices["plates"]["overwrite"]
-        text = repr([choices, response and response[0].identity])
+        text = repr([choices, response and lut_identity(response[0])])
         return hashlib.sha256(text.encode(errors="backslashreplace")).hexdigest()[:16]
 
 
@@ -118,7 +118,7 @@ class Task:
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
-            summary=f"{self.photo.name}: linear",
+            summary=f"{self.photo.name}: linearized",
         )
         if estimate is None:
             return record

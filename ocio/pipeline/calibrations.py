@@ -11,16 +11,14 @@ from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.photograph.image_io import RAW_SUFFIXES
 from crfnet_core.response.curve import ResponseCurve
 
-from ..configs.files import write_config
 from ..configs.plate_color_space import PlateColorSpace
-from ..configs.portable import portable_config
 from ..errors import PlateError
-from ..luts.files import write_lut
 from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles, all_or_none
-from ..report import Measured, calibration_document, calibration_provenance
+from ..report.calibration import Measured, calibration_document, calibration_provenance
+from .delivery import write_luts
 from .plan import OutputPlan, plan_files
 
 
@@ -39,7 +37,7 @@ def plan_calibration(
     source = "raw files and their JPEGs" if is_pairs(frames) else f"{len(frames)} exposures"
     description = f"The inverse response of a camera, as crfnet measured it from {source}"
     space = replace(PlateColorSpace.from_outputs(files, frames[0]), description=description, file_patterns=())
-    return plan_files(files, frames, PlateOptions(overwrite=overwrite), space, outputs.lut_length)
+    return plan_files(files, frames, PlateOptions(overwrite=overwrite), space)
 
 
 def is_pairs(paths: Sequence[Path]) -> bool:
@@ -50,21 +48,17 @@ def is_pairs(paths: Sequence[Path]) -> bool:
 def write_calibration(plan: OutputPlan, calibration: Measured, comparison: Comparison | None = None) -> dict[str, Any]:
     """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
 
-    Raise CRFNetError if a file cannot be written, or the LUT length is out of range; the folder is then as it was.
+    Raise CRFNetError if a file cannot be written; the folder is then as it was.
     """
-    lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
-    document = calibration_document(calibration, plan.files, comparison)
-    with all_or_none([*plan.files.unshared, plan.files.config], overwrite=plan.plates.overwrite) as folder:
-        files = plan.files
-        for path in files.luts:
-            write_lut(folder / path.name, lut)
+    files, lut = plan.files, inverse_response_lut(calibration.curve, comments=calibration_provenance(calibration))
+    document = calibration_document(calibration, files, comparison)
+    with all_or_none([*files.unshared, files.config], overwrite=plan.plates.overwrite) as folder:
+        write_luts(folder, files, lut, plan.space)
         if files.sheet:
             from ..report.calibration_sheet import draw_calibration  # loads matplotlib: optional, and slow
 
             draw_calibration(folder / files.sheet.name, calibration)
         atomic_write_text(folder / files.report.name, json_text(document), error=PlateError)
-        spaces = [plan.space] if plan.space else []
-        write_config(folder / files.config.name, portable_config(spaces), check={files.color_space: lut})
     return document
 
 

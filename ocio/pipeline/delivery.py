@@ -19,13 +19,14 @@ from ..configs.portable import portable_config
 from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
+from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
-from ..output_files import all_or_none, check_config_folder
+from ..output_files import OutputFiles, all_or_none, check_config_folder
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
 from ..plates.primaries import LinearSpace, PlatePrimaries, common_primaries
-from ..report import estimate_document
+from ..report.documents import estimate_document
 from .estimates import FileEstimate, response_lut
 from .plan import OutputPlan
 
@@ -40,7 +41,7 @@ def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLigh
     cannot be written, or a photograph has changed or gone.
     """
     files = plan.files
-    document = estimate_document(estimated.estimate, [facts.report for facts in estimated.photographs], files, light)
+    document = estimate_document(estimated.estimate, [facts.entry for facts in estimated.photographs], files, light)
     document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
     more: dict[Path, Callable[[Path], None]] = {
@@ -75,25 +76,25 @@ def deliver(
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
         frames = [folder / path.name for path in plan.files.linear]
         linear = pool.submit(_write_linear, frames, sources, light, plan.plates, linearize, progress)
-        _write_luts(folder, plan, light)
+        space = plan.space and with_light(plan.space, light.stops, light.plate, light.space)
+        write_luts(folder, plan.files, light.lut, space)
         for path, write in more.items():
             write(folder / path.name)
         linear.result()
     return written
 
 
-def _write_luts(folder: Path, plan: OutputPlan, light: PlateLight) -> None:
-    """Write the LUTs and the config that a plan has."""
-    files = plan.files
-    for path in files.luts if plan.lut_length else ():
-        write_lut(folder / path.name, light.lut)
+def write_luts(folder: Path, files: OutputFiles, lut: AnyLut, space: PlateColorSpace | None) -> None:
+    """Write the LUTs in all formats, and a config with a color space if there is one."""
+    for path in files.luts:
+        write_lut(folder / path.name, lut)
     if files.forward:
-        forward = forward_lut(light.lut)
+        forward = forward_lut(lut)
         for path in files.forward:
             write_lut(folder / path.name, forward)
-    if plan.space:
-        config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
-        write_config(folder / files.config.name, config, check={files.color_space: light.lut.channels[0]})
+    if space:
+        check = {files.color_space: lut.channels[0]}
+        write_config(folder / files.config.name, portable_config([space]), check=check)
 
 
 def _write_linear(
@@ -122,14 +123,14 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
     draw_sheet(path, first.preview, estimated.estimate, stride=first.stride)
 
 
-def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
+def estimated_light(estimated: FileEstimate, plates: PlateOptions) -> PlateLight:
     """Return the meaning of the linear values of an estimate's photographs; the LUT's comments name its primaries, too.
 
     Raise CRFNetError if the photographs differ in their primaries, or these are unknown and have to be converted.
     """
     tags = {path: facts.tags for path, facts in zip(estimated.paths, estimated.firsts, strict=True)}
     plate = common_primaries(tags, plates.primaries)
-    lut = response_lut(estimated.estimate, length=lut_length)
+    lut = response_lut(estimated.estimate)
     comment = f"Primaries: {plate}; the LUT leaves them as they are"
     return PlateLight.from_tags(estimated.firsts[0].tags, replace(lut, comments=(*lut.comments, comment)), plates)
 

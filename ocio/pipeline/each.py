@@ -23,7 +23,7 @@ from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
 from .batch import Batch, Task
 from .delivery import deliver_estimate, estimated_light, with_light
-from .estimates import estimate_files, load_network, load_prior, response_lut
+from .estimates import check_network, estimate_files, response_lut
 from .plan import OutputPlan
 from .records import PhotographRecord
 
@@ -50,16 +50,17 @@ class EstimateBatch(Batch):
 
     def check(self) -> None:
         """Raise a CRFNetError if the camera, the prior or the network cannot be read."""
-        self.response(), load_prior(self.options), load_network(self.options)
+        self.response()
+        check_network(self.options)
 
     def done(self, task: Task) -> PhotographRecord:
         """Estimate one photograph and write its files."""
         is_complete = all(path.exists() for path in task.targets)  # as a killed run leaves it before its record
         estimated = estimate_files([file_source(task.photo)], self.options)
-        light = estimated_light(estimated, self.plates, lut_length=self.outputs.lut_length)
+        light = estimated_light(estimated, self.plates)
         files = self.files(task.folder, task.stem)
         plates = replace(self.plates, overwrite=self.plates.overwrite or is_complete)
-        deliver_estimate(OutputPlan(files, plates, self.outputs.lut_length), estimated, light)
+        deliver_estimate(OutputPlan(files, plates), estimated, light)
         return task.record(light, estimated.estimate, lut=files.lut, linear=files.linear)
 
     def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:

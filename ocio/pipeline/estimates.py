@@ -19,7 +19,6 @@ from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Float32Array, Progress
 
-from ..defaults import LUT_LENGTH
 from ..errors import PlateError
 from ..luts.lut1d import Lut1D, inverse_response_lut
 from ..movies.library import is_movie
@@ -27,7 +26,7 @@ from ..movies.source import PlateSource, file_source, movie_of, photographs_of
 from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
-from ..report import PhotoFacts, provenance
+from ..report.facts import PhotoEntry, provenance
 from .photographs import is_folder, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -38,7 +37,7 @@ PREVIEW_SIDE = 960
 class PhotographFacts:
     """The facts about an analyzed photograph that its files need once its pixels are gone."""
 
-    report: PhotoFacts
+    entry: PhotoEntry  # of the document
     tags: ColorTags  # its primaries, as the file names them
     plate: PlateSource  # the file, or the frame of a movie
     preview: Float32Array  # every `stride`-th pixel, (h, w, 3), in [0, 1]; empty except of the first photograph
@@ -47,9 +46,10 @@ class PhotographFacts:
     @classmethod
     def from_photo(cls, photo: Photo, plate: PlateSource, *, has_preview: bool) -> PhotographFacts:
         """Return the facts about a photograph of a plate."""
-        metadata, stride = photo.metadata, max(1, -(-max(photo.shape[:2]) // PREVIEW_SIDE))
+        (height, width), metadata = photo.shape[:2], photo.metadata
+        stride, has_gain_map = max(1, -(-max(height, width) // PREVIEW_SIDE)), bool(metadata and metadata.has_gain_map)
         return cls(
-            report=PhotoFacts.from_photo(photo),
+            entry=PhotoEntry(photo.path.name, width, height, photo.bit_depth, has_gain_map),
             tags=metadata.color if metadata else ColorTags(),
             plate=plate,
             preview=photo[::stride, ::stride].copy() if has_preview else photo[:0, :0].copy(),
@@ -126,7 +126,7 @@ def estimate_files(
         window, or a file has a published curve.
     """
     camera = load_camera(options)  # first, so that a wrong name is refused at once
-    prior, network = load_prior(options), load_network(options)
+    prior, network = Prior.load(options.prior), load_network(options.model, options.threads)
     analyzed = list(_cut_photographs(sources, options.analysis))
     cut, photographs, positions = zip(*analyzed, strict=True) if analyzed else ((), (), ())
     estimate = estimate_response(cut, network=network, prior=prior, progress=progress)
@@ -150,19 +150,21 @@ def _cut_photographs(
             yield cut_photograph(photo, options), facts, position
 
 
-def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
-    """Return the inverse of an estimated response as a LUT with its provenance: LutError unless 2 to 65536 long."""
-    return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))
+def response_lut(estimate: ResponseEstimate) -> Lut1D:
+    """Return the inverse of an estimated response as a LUT with its provenance."""
+    return inverse_response_lut(estimate.curve, comments=provenance(estimate))
 
 
-def load_network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network that the options name; the last one stays loaded."""
-    return _network(options.model, options.threads)
+@lru_cache(maxsize=1)
+def load_network(model: Path | None, threads: int) -> ResponseNetwork:
+    """Return a network, as in `EstimateOptions`; the last one stays loaded."""
+    return ResponseNetwork.load(model, threads=threads)
 
 
-def load_prior(options: EstimateOptions) -> Prior:
-    """Return the prior that the options name, whose file may change while a process lives."""
-    return Prior.load(options.prior)
+def check_network(options: EstimateOptions) -> None:
+    """Raise a CRFNetError if the prior or the network cannot be read."""
+    Prior.load(options.prior)
+    load_network(options.model, options.threads)
 
 
 def load_camera(options: EstimateOptions) -> Camera | None:
@@ -174,9 +176,3 @@ def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
     """Return the response of that camera, for photographs that nobody looks at; None without one."""
     camera = load_camera(options)
     return None if camera is None else camera_estimate(camera)
-
-
-@lru_cache(maxsize=1)
-def _network(model: Path | None, threads: int) -> ResponseNetwork:
-    """Return a network."""
-    return ResponseNetwork.load(model, threads=threads)

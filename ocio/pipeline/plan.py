@@ -20,15 +20,14 @@ class OutputPlan:
 
     files: OutputFiles
     plates: PlateOptions  # how linear plates are written; `overwrite` holds for every file
-    lut_length: int  # entries of the LUTs; 0 if none are written
     space: PlateColorSpace | None = None  # without its exposure and primaries; None without a config
     lost_color_spaces: tuple[str, ...] = ()  # of other plates, in a config that is replaced
 
     @property
     def targets(self) -> tuple[Path, ...]:
         """The LUTs, the config and the linear plates."""
-        luts = (*self.files.luts, *self.files.forward) if self.lut_length else ()
-        return (*luts, *([self.files.config] if self.space else ()), *self.files.linear)
+        config = [self.files.config] if self.space else []
+        return (*self.files.luts, *self.files.forward, *config, *self.files.linear)
 
 
 def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
@@ -44,12 +43,10 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
             raise PlateError("one_name", first=other, second=photo, name=target.name)
     pattern = sequence_pattern([photo.name for photo in photos])
     space = PlateColorSpace.from_outputs(files, photos[0], file_pattern=pattern)
-    return plan_files(files, photos, plates, space, outputs.lut_length)
+    return plan_files(files, photos, plates, space)
 
 
-def plan_files(
-    files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace, lut_length: int
-) -> OutputPlan:
+def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace) -> OutputPlan:
     """Return the plan of files with a config, after checking that they can be written; create nothing.
 
     Raise PlateError as `check_targets`; ConfigError if the color space cannot be in a config.
@@ -57,7 +54,7 @@ def plan_files(
     targets, configs = files.unshared, [files.config]
     check_targets(files.report.parent, targets, photos=photos, configs=configs, overwrite=plates.overwrite)
     portable_config([space])
-    return OutputPlan(files, plates, lut_length, space, _other_spaces(files))
+    return OutputPlan(files, plates, space, _other_spaces(files))
 
 
 def _other_spaces(files: OutputFiles) -> tuple[str, ...]:

@@ -55,7 +55,7 @@ def pattern_frames(
     wanted = _span(files, Path(name)) if frames is None else parse_frames(frames)
     numbers = tuple(number for number in wanted if number in files)
     if not numbers:
-        raise PlateError("no_such_frames", path=name, frames=format_frames(sorted(files)) or "none of this name")
+        raise PlateError("no_such_frames", path=name, frames=format_frames(sorted(files)) or "none")
     missing = tuple(number for number in wanted if number not in files)
     return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
 

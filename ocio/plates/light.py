@@ -17,7 +17,7 @@ from crfnet_core.response.curve import ResponseCurve
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from ..errors import LutError, PlateError
-from ..luts.rgb_lut import AnyLut
+from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import PlateOptions
 from .exr import is_whole
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
@@ -54,7 +54,7 @@ class PlateLight:
             "colorInteropID": self.space.interop_id,
             "chromaticities": self.space.chromaticities,
             RESPONSE: " | ".join(self.lut.comments),
-            LUT: self.lut.identity,
+            LUT: lut_identity(self.lut),
             EXPOSURE: self.stops,
             PRIMARIES: self.plate.name,
             PRIMARIES_SOURCE: self.plate.source,
@@ -103,7 +103,7 @@ def _difference(written: dict[str, Any], plate: str, light: PlateLight, depth: s
     for name, words in ((PRIMARIES, "primaries"), ("colorInteropID", "color space")):
         if name in written and written[name] != light.attributes[name]:
             return f"the {words} {written[name]}, not {light.attributes[name]}"
-    return "another LUT" if written.get(LUT) != light.lut.identity else ""
+    return "another LUT" if written.get(LUT) != lut_identity(light.lut) else ""
 
 
 def _attributes(path: Path) -> dict[str, Any]:

@@ -23,8 +23,8 @@ def calibration_lines(calibration: Measured) -> list[str]:
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     return [
         f"{_source_words(calibration)}.",
-        f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale relative to white to"
-        f" {scale:.2f} stop (standard deviations); {white_words(calibration)}.",
+        f"Standard deviations: shape {shape:.2f} stop, the error of the linear light once the exposure is matched;"
+        f" scale {scale:.2f} stop, the error of the place of white; {white_words(calibration)}.",
         fit,
         *(f"Warning: {warning}." for warning in calibration.warnings),
     ]

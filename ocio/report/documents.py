@@ -15,7 +15,7 @@ from ..luts.response import ResponseFile
 from ..output_files import OutputFiles
 from ..plates.light import PlateLight, linear_gray
 from ..plates.linear import PlateReport
-from .facts import PhotoFacts
+from .facts import PhotoEntry
 
 #: Decimals kept in the documents of LUTs.
 DECIMALS = 6
@@ -25,7 +25,7 @@ QUARTERS = (0.25, 0.5, 0.75)
 
 
 def estimate_document(
-    estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles, light: PlateLight
+    estimate: ResponseEstimate, photos: Sequence[PhotoEntry], files: OutputFiles, light: PlateLight
 ) -> dict[str, Any]:
     """Return an estimate (`to_dict`), its photographs and its files, named relative to the folder, ready for JSON."""
     return {

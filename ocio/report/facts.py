@@ -1,33 +1,24 @@
 """Facts about photographs and estimates in words, for the command, JSON, LUT files and the sheet."""
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior.verdict import USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
 
 
 @dataclass(frozen=True)
-class PhotoFacts:
-    """The facts in the report about a photograph, once its pixels are gone."""
+class PhotoEntry:
+    """A photograph in the document of an estimate, and in words."""
 
     name: str
     width: int
     height: int
     bit_depth: int
     has_gain_map: bool = False  # so that the base picture was read
-
-    @classmethod
-    def from_photo(cls, photo: Photo) -> Self:
-        """Return the facts of a photograph."""
-        height, width = photo.shape[:2]
-        has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
-        return cls(photo.path.name, width, height, photo.bit_depth, has_gain_map)
 
     def __str__(self) -> str:
         """Return one line for people."""
@@ -72,15 +63,15 @@ def expected_errors(estimate: ResponseEstimate) -> str:
 def basis(estimate: ResponseEstimate) -> str:
     """Return the stored camera, or the prior and what the files say of their making; empty if it is not known."""
     if estimate.camera:
-        return f'response of the camera "{estimate.camera.name}", {estimate.camera.basis}'
+        return f'Response of the camera "{estimate.camera.name}", {estimate.camera.basis}'
     if not estimate.prior:
         return ""
-    return f"prior: {estimate.prior}; {_metadata_words(estimate)}"
+    return f"Prior: {estimate.prior}; {_metadata_words(estimate)}"
 
 
 def agreeing(estimate: ResponseEstimate) -> str:
     """Return in words how many windows agree with the others."""
-    return f"{sum(window.kept for window in estimate.windows)} of {len(estimate.windows)} windows agree"
+    return f"{sum(window.kept for window in estimate.windows)} of {len(estimate.windows)} analyzed windows agree"
 
 
 def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
@@ -89,9 +80,9 @@ def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     lines = (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
         f"Photographs: {', '.join(estimate.photos)}" if estimate.photos else "",
-        f"Model: {estimate.model}" if estimate.model else "",
+        f"Model: {estimate.model}" if estimate.model and not estimate.camera else "",
         f"Verdict: {estimate.verdict}, expected error {expected_errors(estimate)}",
-        "; ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
+        ". ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
     )
     return tuple(filter(None, lines))
 
@@ -100,10 +91,10 @@ def _metadata_words(estimate: ResponseEstimate) -> str:
     """Return what the metadata and who knows the camera say of the photographs; of several that differ, the first."""
     first, *others = [", ".join(origin.words) for origin in estimate.origins] or [""]
     if not first:
-        return "no file metadata used"
+        return "no metadata used"
     differing = sum(words != first for words in others)
     more = f" (the first of {1 + len(others)}; {differing} differ{'s' * (differing == 1)})" if differing else ""
     if estimate.origins[0].is_told:
         who = "you and the file say" if len(estimate.origins[0].words) > 1 else "you say"
         return f"{who}: {first}{more}"
-    return f"file metadata used: {first}{more}"
+    return f"metadata: {first}{more}"

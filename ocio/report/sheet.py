@@ -26,7 +26,7 @@ from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
-from .facts import agreeing, basis, curve_error_words, shape_error_words
+from .facts import agreeing, basis, expected_errors
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -96,9 +96,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
     color = VERDICT_INK[estimate.verdict]
     verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
-    shape, kind = shape_error_words(estimate), estimate.likely_kind
-    figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error_words(estimate)}"]
-    result = DOT.join(map(str, filter(None, [*figures, kind])))
+    result = DOT.join(map(str, filter(None, [f"expected error {expected_errors(estimate)}", estimate.likely_kind])))
     place: dict[str, Any] = {"xytext": (12, 0), "textcoords": "offset points", "va": "center"}
     figure.add_artist(Annotation(result, xy=(1, 0.5), xycoords=verdict, color=INK, **place))
     figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
@@ -111,17 +109,19 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     """Draw the response with its band, and gamma 2.2."""
     irradiance = np.linspace(0, 1, SAMPLES)
     lower, upper = estimate.band
-    gamma = ResponseCurve.gamma().brightness
-    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
-    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
     axes.plot(irradiance, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
-    axes.set(
-        xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="Irradiance (scene-linear, relative)", ylabel="Brightness"
-    )
+    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
+    complete_curve(axes)
+
+
+def complete_curve(axes: Axes) -> None:
+    """Add gamma 2.2, below the other lines, and the scales and the legend to the drawing of a response."""
+    irradiance, gamma = np.linspace(0, 1, SAMPLES), ResponseCurve.gamma().brightness
+    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), zorder=1.5, label="gamma 2.2")
+    axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
+    axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
+    axes.legend(loc="lower right", frameon=False, fontsize=10)
     plain(axes)
-    handles, labels = axes.get_legend_handles_labels()
-    order = [2, 0, 1]
-    axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower right", frameon=False, fontsize=10)
 
 
 def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:

@@ -23,8 +23,10 @@ VERDICTS = {
     Verdict.DO_NOT_TRUST: "not to be trusted",
 }
 
-#: How much an estimate from photographs may claim; the place is the error of where white lies, in stops.
-RANK = "On real cameras white was off by {:.1f} stop; such errors hold on average, and hardly rank single photographs."
+#: How much an estimate from photographs may claim.
+RANK = (
+    f"On real cameras white was off by {WHITE_ERROR:.1f} stop. These errors are averages and hardly rank photographs."
+)
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
 GRAY_TOLERANCE = 0.0005
@@ -38,9 +40,7 @@ REMEDIES = {
 
 
 def source_line(estimate: ResponseEstimate) -> str:
-    """Return from which photographs a response was estimated, or of which stored camera it is."""
-    if estimate.camera:
-        return f'Response of the camera "{estimate.camera.name}".'
+    """Return from which photographs a response was estimated."""
     first, *others = estimate.photos
     return f"Response estimated from {first}" + (f" and {len(others)} more frames." if others else ".")
 
@@ -52,10 +52,10 @@ def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> lis
     return [
         f"The {'response' if estimate.camera else 'estimate'} is {verdict}.",
         _expectation(estimate, phrases),
-        *([RANK.format(WHITE_ERROR)] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
+        *([RANK] if estimate.prior and estimate.verdict is Verdict.USABLE else []),
         *([f"Most likely {kind}."] if kind else []),
-        *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
-        *([f"{agreeing(estimate)}."] if estimate.windows else []),
+        *([f"{rests_on}."] if rests_on else []),
+        *([f"{agreeing(estimate)}."] if estimate.windows and not estimate.camera else []),
         *(f"Warning: {warning}." for warning in estimate.warnings),
     ]
 
@@ -89,7 +89,7 @@ def light_lines(document: Mapping[str, Any]) -> list[str]:
     return [
         f"Primaries: {primaries['name']} ({primaries['source']}); the linear EXR is {space['name']}"
         f" ({space['interop_id']}).",
-        *(["Warning: colors are taken as they are; say what the primaries are with --primaries."] * is_unknown),
+        *(["Warning: the colors are not converted; state the primaries with --primaries."] * is_unknown),
         _exposure_line(document["exposure"]),
     ]
 
@@ -100,7 +100,7 @@ def plate_lines(report: PlateReport) -> list[str]:
     if report.written:
         lines.append(f"Written: {_first_and_last(report.written)}.")
     if report.skipped:
-        lines.append(f"Already there and left alone (add --overwrite otherwise): {_first_and_last(report.skipped)}.")
+        lines.append(f"Already there and left alone (--overwrite replaces them): {_first_and_last(report.skipped)}.")
     if report.missing:
         lines.append(f"Missing frames: {format_frames(report.missing)}.")
     return lines
@@ -158,21 +158,20 @@ def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:
     shape, curve = shape_error_words(estimate), curve_error_words(estimate, phrases)
     gamma = f"{brightness_percent(GAMMA_ERROR):.0f} %"
     if not shape:
-        return f"Expect the curve to be off by {curve}; gamma 2.2 is usually off by {gamma}."
+        return f"Expected error: {curve} in the curve; gamma 2.2 usually has {gamma}."
     return (
-        f"Expect the shape of the linear light to be off by {shape} (RMS between codes {FIRST_SHAPE_CODE} and"
-        f" {LAST_SHAPE_CODE}) and the curve by {curve}; gamma 2.2 is usually off by {GAMMA_SHAPE_ERROR:.1f} stop"
-        f" and {gamma}."
+        f"Expected error: {shape} in the linear light once the exposure is matched (RMS, codes {FIRST_SHAPE_CODE} to"
+        f" {LAST_SHAPE_CODE}), {curve} in the curve; gamma 2.2 usually has {GAMMA_SHAPE_ERROR:.1f} stop and {gamma}."
     )
 
 
 def _exposure_line(exposure: Mapping[str, Any]) -> str:
     """Return the exposure, where 18 % gray lies by it, and how many stops would put it right."""
     code, linear, wanted = round(255 * exposure["gray_brightness"]), exposure["gray_linear"], exposure["gray_stops"]
-    line = f"Exposure: {exposure['stops']:+.2f} stop. Code {code}, by convention 18 % gray, is then {linear:.3f}"
+    line = f"Exposure: {exposure['stops']:+.2f} stop, which puts code {code} (18 % gray by convention) at {linear:.3f}"
     if wanted is None or abs(linear - MIDDLE_GRAY) < GRAY_TOLERANCE:
         return f"{line}."
-    return f"{line}; --exposure gray would make it {MIDDLE_GRAY}: {wanted:+.2f} stop."
+    return f"{line}; --exposure gray puts it at {MIDDLE_GRAY} ({wanted:+.2f} stop)."
 
 
 def _first_and_last(paths: Sequence[Path]) -> str:

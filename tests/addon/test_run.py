@@ -75,7 +75,7 @@ def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, 
 
 def test_the_network_is_loaded_once(make_job, calls):
     loads = calls(ResponseNetwork, "load")
-    estimates._network.cache_clear()
+    estimates.load_network.cache_clear()
     for _ in range(3):
         run(make_job(mode=ApplyMode.NODES))
     assert len(loads) == 1

@@ -123,7 +123,7 @@ def test_names_of_encodings_in_profiles(profile, transfer):
         ),
         ({"raw_file": "1.CR2"}, ("developed from a raw file by a program of Adobe",)),
         (IJG, ("encoded again by a program, as JPEG of quality 92",)),
-        ({"width": 640, "height": 480}, ("probably scaled after the camera wrote it: it has 640 x 480 pixels",)),
+        ({"width": 640, "height": 480}, ("probably scaled after the camera wrote it (640 x 480 pixels)",)),
         ({"file_format": "DPX"}, ("DPX files hold film or video",)),
         ({"file_format": "movie"}, ("a frame of a movie",)),
     ],

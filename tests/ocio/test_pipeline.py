@@ -11,7 +11,6 @@ import pytest
 from crfnet import pipeline
 from crfnet.cli.main import main
 from crfnet.configs.plate_color_space import PlateColorSpace
-from crfnet.defaults import LUT_LENGTH
 from crfnet.errors import PlateError
 from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
@@ -47,7 +46,7 @@ def options(fixed_model):
 class TestEstimates:
     def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
         found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
-        assert [str(facts.report) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
+        assert [str(facts.entry) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
         assert (found.photographs[0].preview.shape, found.photographs[0].stride) == ((378, 672, 3), 1)
         assert found.photographs[1].preview.size == 0
 
@@ -75,7 +74,7 @@ class TestExport:
         outputs = OutputOptions(has_sheet=False, has_linear=False)
         files = OutputFiles.named(folder, [Path("plate.png")], outputs)
         space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
-        return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), LUT_LENGTH, space)
+        return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), space)
 
     def test_writes_the_lut_in_three_formats_and_a_config(self, plan):
         written = pipeline.deliver(plan, light_of(LUT, exposure=1))
@@ -118,16 +117,15 @@ class TestExport:
         assert not plan.files.config.parent.exists()
 
 
-def test_a_process_reads_a_prior_anew_and_a_network_once(fixed_model, tmp_path):
+def test_a_process_reads_a_prior_anew_and_a_network_once(plate, fixed_model, tmp_path):
     path = tmp_path / "mine.json"
-    shares = dict.fromkeys(Family, 0.125)
-    options = EstimateOptions(model=fixed_model, prior=str(path))
+    options = EstimateOptions(model=fixed_model, prior=str(path), analysis=AnalysisOptions(windows=2))
     found = []
     for evidence in (1.0, 0.5):
-        path.write_text(json.dumps({"shares": shares, "evidence": evidence}))
-        found.append((pipeline.load_network(options), pipeline.load_prior(options).evidence))
-    assert found[0][0] is found[1][0]
-    assert [evidence for _, evidence in found] == [1.0, 0.5]
+        path.write_text(json.dumps({"shares": dict.fromkeys(Family, 0.125), "evidence": evidence}))
+        found.append(pipeline.estimate_files([FrameSequence((plate,))], options).estimate.families)
+    assert found[0] != found[1]
+    assert estimates.load_network(fixed_model, 0) is estimates.load_network(fixed_model, 0)
 
 
 def test_the_estimate_is_near_the_command(plate, fixed_model, tmp_path, monkeypatch):

@@ -5,8 +5,6 @@ import math
 
 import pytest
 
-from crfnet import report
-from crfnet.defaults import WHITE_ERROR
 from crfnet.report import facts, words
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
@@ -52,32 +50,32 @@ def stored(estimate):
 
 
 def test_the_lines_of_an_estimate(estimate):
-    *lines, windows = report.verdict_lines(estimate())
+    *lines, windows = words.verdict_lines(estimate())
     assert lines == [
         "The estimate is usable: look at the linear plate before you rely on it.",
-        "Expect the shape of the linear light to be off by 0.10 stop (RMS between codes 16 and 240) and the curve by"
-        " 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 0.7 stop and 10 %.",
-        words.RANK.format(WHITE_ERROR),
+        "Expected error: 0.10 stop in the linear light once the exposure is matched (RMS, codes 16 to 240), 3.9 % of"
+        " the brightness range (E_est 1.25) in the curve; gamma 2.2 usually has 0.7 stop and 12 %.",
+        words.RANK,
         "Most likely a camera's own rendering, 93 %.",
-        "Prior: camera; file metadata used: taken by Canon EOS 20D, a camera with interchangeable lenses.",
+        "Prior: camera; metadata: taken by Canon EOS 20D, a camera with interchangeable lenses.",
     ]
-    assert windows.endswith(" of 2 windows agree.")
+    assert windows.endswith(" of 2 analyzed windows agree.")
 
 
 @pytest.mark.parametrize(
-    ("fields", "words"),
+    ("fields", "text"),
     [
         *(({"shape_uncertainty": float(text)}, f"{text} stop") for text in ("0.3002", "0.2998", "0.30", "0.11")),
         ({"uncertainty": 2.504}, "(E_est 2.50)"),
     ],
 )
-def test_a_number_lies_on_the_side_of_a_limit_that_the_verdict_says(estimate, fields, words):
-    assert words in report.verdict_lines(estimate(**fields))[1]
+def test_a_number_lies_on_the_side_of_a_limit_that_the_verdict_says(estimate, fields, text):
+    assert text in words.verdict_lines(estimate(**fields))[1]
 
 
 def test_warnings_come_last_also_in_the_line_for_lists(estimate):
-    assert report.verdict_lines(estimate(warnings=("dark", "gray")))[-2:] == ["Warning: dark.", "Warning: gray."]
-    line = report.result_line(estimate(warnings=("dark",)), name="plate.jpg")
+    assert words.verdict_lines(estimate(warnings=("dark", "gray")))[-2:] == ["Warning: dark.", "Warning: gray."]
+    line = words.result_line(estimate(warnings=("dark",)), name="plate.jpg")
     assert line == (
         "plate.jpg: usable, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25);"
         " a camera's own rendering, 93 %; dark"
@@ -85,10 +83,10 @@ def test_warnings_come_last_also_in_the_line_for_lists(estimate):
 
 
 def test_luts_say_how_far_to_trust_them(estimate):
-    assert report.provenance(estimate())[-2:] == (
+    assert facts.provenance(estimate())[-2:] == (
         "Verdict: usable, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25)",
-        "Most likely a camera's own rendering, 93 %; prior: camera; file metadata used: taken by Canon EOS 20D,"
-        " a camera with interchangeable lenses",
+        "Most likely a camera's own rendering, 93 %. Prior: camera; metadata: taken by Canon EOS 20D, a camera with"
+        " interchangeable lenses",
     )
 
 
@@ -108,12 +106,12 @@ def test_the_likely_kind(estimate, families, words):
 
 @pytest.mark.parametrize("family", words.REMEDIES)
 def test_the_remedy_follows_the_kind(estimate, family):
-    first = report.verdict_lines(estimate(families={family: 1.0}, verdict=Verdict.DO_NOT_TRUST))[0]
+    first = words.verdict_lines(estimate(families={family: 1.0}, verdict=Verdict.DO_NOT_TRUST))[0]
     assert first == f"The estimate is not to be trusted: {words.REMEDIES[family]}."
 
 
 def test_of_a_cameras_photograph_its_own_file_or_a_measurement_helps(estimate):
-    first = report.verdict_lines(estimate(verdict=Verdict.DO_NOT_TRUST))[0]
+    first = words.verdict_lines(estimate(verdict=Verdict.DO_NOT_TRUST))[0]
     assert first == "The estimate is not to be trusted: give the file that the camera wrote, or run crfnet calibrate."
 
 
@@ -121,30 +119,30 @@ def test_who_says_what_took_the_photograph(estimate):
     unnamed = file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400))
     told = with_stated_device(unnamed, Device.PHONE)
     assert facts.basis(estimate(origins=(told,))) == (
-        "prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it: it has"
-        " 600 x 400 pixels"
+        "Prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it (600 x 400"
+        " pixels)"
     )
     bare = with_stated_device(file_origin(FileMetadata()), Device.COMPACT)
-    assert facts.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
-    assert facts.basis(estimate(origins=())) == "prior: camera; no file metadata used"
+    assert facts.basis(estimate(origins=(bare,))) == "Prior: camera; you say: taken with a compact camera"
+    assert facts.basis(estimate(origins=())) == "Prior: camera; no metadata used"
 
 
 def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
     fields = {"verdict": Verdict.DO_NOT_TRUST, "families": {Family.UNEXPLAINED: 1.0}}
     asked = "with --taken-with which kind of camera took it, if it is a photograph."
-    assert report.verdict_lines(estimate(**fields, origins=()))[0].endswith(asked)
-    assert report.verdict_lines(estimate(**fields, origins=(file_origin(FileMetadata()),)))[0].endswith(asked)
-    assert not report.verdict_lines(estimate(**fields))[0].endswith(asked)
+    assert words.verdict_lines(estimate(**fields, origins=()))[0].endswith(asked)
+    assert words.verdict_lines(estimate(**fields, origins=(file_origin(FileMetadata()),)))[0].endswith(asked)
+    assert not words.verdict_lines(estimate(**fields))[0].endswith(asked)
     drone = file_origin(dataclasses.replace(CANON, make="DJI", model="FC3170"))
-    assert not report.verdict_lines(estimate(**fields, origins=(drone,)))[0].endswith(asked)
-    assert not report.verdict_lines(estimate(**fields, origins=(), windows=()))[0].endswith(asked)
+    assert not words.verdict_lines(estimate(**fields, origins=(drone,)))[0].endswith(asked)
+    assert not words.verdict_lines(estimate(**fields, origins=(), windows=()))[0].endswith(asked)
 
 
 def test_what_an_earlier_version_did_not_store_is_left_out(stored):
-    *lines, _ = report.verdict_lines(stored)
+    *lines, _ = words.verdict_lines(stored)
     assert lines == [
         "The estimate is usable: look at the linear plate before you rely on it.",
-        "Expect the curve to be off by 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 10 %.",
+        "Expected error: 3.9 % of the brightness range (E_est 1.25) in the curve; gamma 2.2 usually has 12 %.",
     ]
-    assert report.provenance(stored)[-1] == "Verdict: usable, expected error 3.9 % of the brightness range (E_est 1.25)"
-    assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")
+    assert facts.provenance(stored)[-1] == "Verdict: usable, expected error 3.9 % of the brightness range (E_est 1.25)"
+    assert words.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")

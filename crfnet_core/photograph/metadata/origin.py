@@ -232,4 +232,4 @@ def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     now = "{} x {} pixels".format(*size)
     if before and sorted(before) != sorted(size):
         return "scaled from {} x {} to {} after the camera wrote it".format(*before, now)
-    return f"probably scaled after the camera wrote it: it has {now}"
+    return f"probably scaled after the camera wrote it ({now})"

@@ -4,35 +4,39 @@ import argparse
 import sys
 from pathlib import Path
 
-from .parts import Commands, Parser, add_action, add_command, add_frames, add_json, add_network, add_plate, written_path
+from . import parts
+from .parts import Commands, Parser, written_path
+
+#: The help of --no-sheet.
+NO_SHEET = "do not draw the sheet, the picture of the result"
 
 ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
-  crfnet estimate day1/*.jpg --out look            several photographs of one camera, one response
-  crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
-  crfnet estimate photographs/ --each --no-sheet --no-linear --out responses        a whole folder; can be continued
-  crfnet estimate clip.mp4 --out look               a movie: some of its frames, one response
-  crfnet estimate shot.%04d.dpx --frames 1001-1100 --out look        a sequence: some of these frames
-  crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
-  crfnet estimate plate01.jpg --out look --camera "A7 III"       the response of a stored camera: see crfnet camera
+  crfnet estimate day1/*.jpg --out look                        # photographs of one camera: one response
+  crfnet estimate cam_a.jpg cam_b.jpg --each --out look        # photographs of two cameras: two responses
+  crfnet estimate photographs/ --each --no-sheet --no-linear --out responses   # a folder; repeat to continue
+  crfnet estimate clip.mp4 --out look                          # a movie: up to 8 of its frames, one response
+  crfnet estimate shot.%04d.dpx --frames 1001-1100 --out look  # a sequence: up to 8 of these frames
+  crfnet estimate scan.tif --out look --prior any              # a film scan or old video
+  crfnet estimate plate01.jpg --out look --camera "A7 III"     # the measured response of a stored camera
 
-For plate01.jpg the folder then holds plate01.spi1d and other LUTs of the inverse response, config.ocio,
+For plate01.jpg the folder then holds LUTs of the inverse response (plate01.spi1d, .cube, .clf), config.ocio,
 plate01_linear.exr, plate01_sheet.png (the estimate as a picture) and plate01.json."""
 
 CALIBRATE_EXAMPLES = """examples:
   crfnet calibrate stack/*.jpg --out camera --name eos20d
   crfnet calibrate a.jpg b.jpg c.jpg d.jpg --times 1/60,1/30,1/15,1/8 --out camera
-  crfnet calibrate stack/*.jpg --out camera --compare look/plate01.json       how good was that estimate?
-  crfnet calibrate SHOT.NEF --out camera --name d90           one raw file, with the JPEG beside it or inside it
-  crfnet calibrate raw/ --out camera --name d90               all raw files of a folder, each with its JPEG
+  crfnet calibrate stack/*.jpg --out camera --compare look/plate01.json     # and check an estimate
+  crfnet calibrate SHOT.NEF --out camera --name d90         # a raw file, and the JPEG beside or inside it
+  crfnet calibrate raw/ --out camera --name d90             # all raw files of a folder, each with its JPEG
 
-A stack is one still scene, from a tripod, in 4 or more frames a stop or so apart: the darkest shows nearly nothing
-white, the brightest is mostly white. Fix ISO, aperture, white balance and the picture style; switch off automatic
-tones. For eos20d the folder then holds eos20d.spi1d and other LUTs of the inverse response, config.ocio,
-eos20d_sheet.png (every frame's points on the curve) and eos20d.json.
+A stack is one still scene, from a tripod, in 4 or more frames a stop or so apart: the darkest has hardly any white,
+the brightest is mostly white. Fix ISO, aperture, white balance and the picture style; switch off automatic tones.
+For eos20d the folder then holds LUTs of the inverse response (eos20d.spi1d, .cube, .clf), config.ocio,
+eos20d_sheet.png (the points of every frame on the curve) and eos20d.json.
 
-A raw file and the JPEG that the camera made of the same shot show the response at once; several shots of one picture
-style are measured together. It needs rawpy and SciPy: pip install 'crfnet[calibrate]'."""
+A raw file and the camera's JPEG of the same shot are enough; several shots of one picture style are measured together.
+This needs rawpy and SciPy: pip install 'crfnet[calibrate]'."""
 
 LINEARIZE_EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
@@ -40,21 +44,21 @@ LINEARIZE_EXAMPLES = """examples:
   crfnet linearize shot.%04d.png --camera "A7 III" --out linear/shot.%04d.exr
   crfnet linearize 'shot.####.jpg' --frames 1001-1100 --out 'linear/shot.####.exr'
   crfnet linearize clip.mov --frames 1-100 --lut look/clip.spi1d --out linear/clip.%04d.exr
-  crfnet linearize photographs/ --each --camera "A7 III" --out linear       a whole folder; can be continued
+  crfnet linearize photographs/ --each --camera "A7 III" --out linear   # a folder; repeat to continue
 
-Without --lut and --camera one response is estimated from several of the frames. Frames that are already written are
-left alone, so an interrupted run goes on where it stopped. The first frame of a movie has number 1."""
+Without --lut and --camera one response is estimated from up to 8 of the frames. Frames that are already written are
+left alone, so the same command continues an interrupted run. The first frame of a movie has number 1."""
 
 CAMERA_EXAMPLES = """examples:
-  crfnet camera add --from-calibration camera/a7.json --name "A7 III"    measured by crfnet calibrate
+  crfnet camera add --from-calibration camera/a7.json --name "A7 III"
   crfnet camera list
-  crfnet camera show "A7 III"                                  how good the response is
-  crfnet camera export "A7 III" a7.spi1d                       or .cube, .clf, or .json to hand it on
+  crfnet camera show "A7 III"                   # its uncertainty
+  crfnet camera export "A7 III" a7.spi1d        # or .cube, .clf; .json to hand the camera on
   crfnet camera remove "A7 III"
   crfnet estimate plate.jpg --camera "A7 III" --out look
 
-One name is for one picture mode: a camera set to another has another response. The library is a folder of JSON files
-among the user's data, or in $CRFNET_DATA_DIR."""
+Each picture mode of a camera has a response of its own, so store it under a name of its own. A camera is a JSON file in
+the user's data folder, or in $CRFNET_DATA_DIR; crfnet camera list names the folder."""
 
 CONFIG_EXAMPLES = """examples:
   crfnet config add --base /studio/config.ocio --out show look
@@ -62,9 +66,9 @@ CONFIG_EXAMPLES = """examples:
   crfnet config add --base '$OCIO' --out show look/plate01.spi1d
   crfnet config list show
 
-LOOK is the result of crfnet estimate: its folder, its JSON or a LUT. CONFIG is a file, the name of a config that is
-built into OpenColorIO, $OCIO, or the folder or executable of a Blender. It stays as it is: the new config in FOLDER has
-everything of it, finds its LUTs where they lie, and knows the plates, too."""
+ESTIMATE is a result of crfnet estimate: its folder, its JSON or a LUT. CONFIG is a file, the name of a config that is
+built into OpenColorIO, $OCIO, or the folder or executable of a Blender. It is not changed: the new config in FOLDER has
+everything in it and the color spaces of the plates, and finds the LUTs of CONFIG where they are."""
 
 INFO_EXAMPLES = """examples:
   crfnet info look/plate01.spi1d"""
@@ -91,127 +95,96 @@ def build_parser() -> argparse.ArgumentParser:
         "--version", action=_Version, nargs=0, default=argparse.SUPPRESS, help="show program's version number and exit"
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (_add_estimate, _add_calibrate, _add_camera, _add_linearize, _add_config, _add_info):
+    for add in (_add_estimate, _add_linearize, _add_calibrate, _add_camera, _add_config, _add_info):
         add(commands)
     return parser
 
 
 def _add_estimate(commands: Commands) -> None:
     """Add `crfnet estimate`."""
-    parser = add_command(
-        commands, "estimate", "estimate the response of the camera that took a photograph", ESTIMATE_EXAMPLES
-    )
-    parser.add_argument(
-        "photos",
-        nargs="+",
-        type=Path,
-        metavar="PHOTO",
-        help="JPEG, HEIC, PNG, TIFF, DPX and others, a movie, or a sequence",
-    )
-    parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
-    add_frames(parser, "one response per photograph, not one for all; PHOTO may be a folder")
-    parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values, too")
-    parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
-    parser.add_argument("--no-linear", action="store_true", help="do not write the photographs as linear EXR")
-    add_network(parser)
-    add_plate(parser)
-
-
-def _add_calibrate(commands: Commands) -> None:
-    """Add `crfnet calibrate`."""
-    parser = add_command(
-        commands,
-        "calibrate",
-        "measure a camera's response from an exposure stack, or from raw files and their JPEGs",
-        CALIBRATE_EXAMPLES,
-    )
-    parser.add_argument(
-        "photos",
-        nargs="+",
-        type=Path,
-        metavar="FILE",
-        help="frames of a stack; or raw files, their JPEGs, folders of both",
-    )
-    parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
-    parser.add_argument("--name", metavar="NAME", help="the name of the files and of the color space (first file's)")
-    parser.add_argument(
-        "--times", metavar="LIST", help="exposure times in seconds, one for each frame, instead of EXIF's"
-    )
-    parser.add_argument(
-        "--compare", type=Path, metavar="FILE", help="a response to check: JSON of an estimate, or a LUT"
-    )
-    parser.add_argument(
-        "--accept-edited", action="store_true", help="measure what a program makes of its files, not the camera"
-    )
-    parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
-    parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
-    add_json(parser)
+    summary = "estimate the response of the camera that took a photograph"
+    parser = parts.add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
+    photos = "photograph, movie, or sequence such as shot.%%04d.png"
+    parser.add_argument("photos", nargs="+", type=Path, metavar="PHOTO", help=photos)
+    parts.add_out(parser, "DIR", "folder for all files")
+    parts.add_frames(parser, "estimate one response for each photograph, not one for all; PHOTO may be a folder")
+    parts.add_flag(parser, "--forward", "also write the response itself as a LUT, from light to code values")
+    parts.add_flag(parser, "--no-sheet", NO_SHEET)
+    parts.add_flag(parser, "--no-linear", "do not write linear EXR files")
+    parts.add_network(parser)
+    parts.add_plate(parser)
 
 
 def _add_linearize(commands: Commands) -> None:
     """Add `crfnet linearize`."""
-    parser = add_command(commands, "linearize", "write a plate or a frame sequence as linear EXR", LINEARIZE_EXAMPLES)
-    parser.add_argument(
-        "plates",
-        nargs="+",
-        metavar="PLATES",
-        help="a file, a movie, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png;"
-        " with --each photographs and folders of them",
-    )
-    parser.add_argument(
-        "--out",
-        type=written_path,
-        required=True,
-        metavar="PATTERN",
-        help="file, or pattern like PLATES; with --each a folder",
-    )
-    parser.add_argument(
-        "--lut", type=Path, metavar="FILE", help="the response: a 1D LUT of any format that OpenColorIO reads"
-    )
-    add_frames(parser, "photographs, not a sequence: without --lut and --camera each by its own response")
-    parser.add_argument(
-        "--encoded", action="store_true", help="OpenEXR plates that do not say it hold encoded values, not linear ones"
-    )
-    add_network(parser)
-    add_plate(parser)
+    summary = "write plates, sequences or movies as linear EXR"
+    parser = parts.add_command(commands, "linearize", summary, LINEARIZE_EXAMPLES)
+    plates = "photograph, movie, folder with one sequence, or sequence such as shot.%%04d.png or shot.####.png"
+    each = "; with --each photographs and folders"
+    parser.add_argument("plates", nargs="+", metavar="PLATES", help=plates + each)
+    parts.add_out(parser, "PATTERN", "EXR file; for a sequence a name such as l.%%04d.exr; with --each a folder")
+    lut = "response to use: a 1D LUT of any format that OpenColorIO reads"
+    parser.add_argument("--lut", type=Path, metavar="FILE", help=lut)
+    parts.add_frames(parser, "PLATES are photographs, each with its own response without --lut and --camera")
+    parts.add_flag(parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values")
+    parts.add_network(parser)
+    parts.add_plate(parser)
+
+
+def _add_calibrate(commands: Commands) -> None:
+    """Add `crfnet calibrate`."""
+    summary = "measure a camera's response from an exposure stack, or from raw files and their JPEGs"
+    parser = parts.add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
+    files = "frames of a stack; or raw files, their JPEGs, folders of both"
+    parser.add_argument("photos", nargs="+", type=Path, metavar="FILE", help=files)
+    parts.add_out(parser, "DIR", "folder for all files")
+    parts.add_text(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
+    parts.add_text(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: EXIF)")
+    compare = "response to compare with the measured one: the JSON of an estimate, or a LUT"
+    parser.add_argument("--compare", type=Path, metavar="FILE", help=compare)
+    parts.add_flag(parser, "--accept-edited", "accept files that a program has edited: the response is the program's")
+    parts.add_flag(parser, "--no-sheet", NO_SHEET)
+    parts.add_flag(parser, "--overwrite", parts.OVERWRITE)
+    parts.add_json(parser)
 
 
 def _add_camera(commands: Commands) -> None:
     """Add `crfnet camera` and its five actions."""
-    parser = add_command(commands, "camera", "keep measured responses of cameras, to use them again", CAMERA_EXAMPLES)
+    summary = "store measured responses of cameras, to use them with --camera"
+    parser = parts.add_command(commands, "camera", summary, CAMERA_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
-    addition = add_action(actions, "add", "keep a measured response")
-    addition.add_argument(
-        "--from-calibration", type=Path, required=True, metavar="FILE", help="the JSON that crfnet calibrate wrote"
-    )
-    addition.add_argument("--name", metavar="NAME", help="the camera's name (by default FILE's)")
-    addition.add_argument("--overwrite", action="store_true", help="replace the camera of this name")
-    add_action(actions, "list", "list your cameras and the ones that come with crfnet")
-    for action, words in (("show", "show how good the response of a camera is"), ("remove", "remove a camera")):
-        add_action(actions, action, words).add_argument("name", metavar="NAME", help="the camera")
-    export = add_action(actions, "export", "write the response of a camera to a file")
-    export.add_argument("name", metavar="NAME", help="the camera")
-    export.add_argument("out", type=written_path, metavar="OUT", help="a LUT, or .json to hand the camera on")
-    export.add_argument("--overwrite", action="store_true", help="replace a file that is already there")
+    addition = parts.add_action(actions, "add", "store a measured response")
+    calibration = "the JSON file of crfnet calibrate"
+    addition.add_argument("--from-calibration", type=Path, required=True, metavar="FILE", help=calibration)
+    parts.add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
+    parts.add_flag(addition, "--overwrite", "replace the camera of this name")
+    parts.add_action(actions, "list", "list your cameras and the packaged ones")
+    show = parts.add_action(actions, "show", "show a camera and the uncertainty of its response")
+    remove = parts.add_action(actions, "remove", "remove one of your cameras")
+    export = parts.add_action(actions, "export", "write the response of a camera to a file")
+    for action in (show, remove, export):
+        action.add_argument("name", metavar="NAME", help="the camera")
+    export.add_argument("out", type=written_path, metavar="OUT", help="a LUT file, or .json to hand the camera on")
+    parts.add_flag(export, "--overwrite", parts.OVERWRITE)
 
 
 def _add_config(commands: Commands) -> None:
     """Add `crfnet config` and its two actions."""
-    parser = add_command(commands, "config", "write a config that knows plates, built on a studio's", CONFIG_EXAMPLES)
+    summary = "add the color spaces of plates to a copy of an OpenColorIO config"
+    parser = parts.add_command(commands, "config", summary, CONFIG_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
-    addition = add_action(actions, "add", "write a new config: another one with plates added")
-    addition.add_argument("looks", nargs="+", type=Path, metavar="LOOK", help="folder, JSON or LUT")
-    addition.add_argument("--base", required=True, metavar="CONFIG", help="the config to build on; it is not changed")
-    addition.add_argument(
-        "--out", type=written_path, required=True, metavar="FOLDER", help="folder for config.ocio and the LUTs"
-    )
-    addition.add_argument("--overwrite", action="store_true", help="replace files that are already there")
-    listing = add_action(actions, "list", "list the plates of a config")
-    listing.add_argument("config", metavar="CONFIG", help="the config")
+    addition = parts.add_action(actions, "add", "write a new config: CONFIG with the color spaces of plates")
+    looks = "folder, JSON or LUT of crfnet estimate"
+    addition.add_argument("looks", nargs="+", type=Path, metavar="ESTIMATE", help=looks)
+    addition.add_argument("--base", required=True, metavar="CONFIG", help="config to build on; it is not changed")
+    parts.add_out(addition, "FOLDER", "folder for config.ocio and the LUTs")
+    parts.add_flag(addition, "--overwrite", parts.OVERWRITE)
+    listing = parts.add_action(actions, "list", "list the plates of a config")
+    listing.add_argument("config", metavar="CONFIG", help="config with plates")
 
 
 def _add_info(commands: Commands) -> None:
     """Add `crfnet info`."""
-    parser = add_command(commands, "info", "say what a LUT file holds", INFO_EXAMPLES)
-    parser.add_argument("lut", type=Path, metavar="FILE", help="a LUT that OpenColorIO reads")
-    add_json(parser)
+    parser = parts.add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
+    parser.add_argument("lut", type=Path, metavar="FILE", help="LUT that OpenColorIO reads")
+    parts.add_json(parser)

@@ -1,6 +1,7 @@
 """Options that several subcommands of `crfnet` have, and the types of their values."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple, NoReturn, TypeAlias
 
@@ -12,6 +13,9 @@ BAD_INPUT = 2
 
 #: Exit code with --strict if a response is not to be trusted; everything is written nevertheless.
 NOT_TRUSTED = 3
+
+#: The help of --overwrite.
+OVERWRITE = "replace files that are already there"
 
 
 class Exposure(NamedTuple):
@@ -50,75 +54,79 @@ def add_action(actions: Commands, name: str, summary: str) -> argparse.ArgumentP
     return parser
 
 
+def add_flag(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:
+    """Add an option without a value."""
+    parser.add_argument(name, action="store_true", help=meaning)
+
+
+def add_text(parser: argparse.ArgumentParser, name: str, metavar: str, meaning: str) -> None:
+    """Add an option with any text as its value."""
+    parser.add_argument(name, metavar=metavar, help=meaning)
+
+
+def add_out(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> None:
+    """Add --out."""
+    parser.add_argument("--out", type=written_path, required=True, metavar=metavar, help=meaning)
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add --json."""
+    add_flag(parser, "--json", "print one JSON document instead of text")
+
+
+def add_choice(parser: argparse.ArgumentParser, name: str, choices: Sequence[str], meaning: str) -> None:
+    """Add an option with one of several values; the first is the default."""
+    help_text = f"{meaning} (default: {choices[0]})"
+    parser.add_argument(name, choices=choices, default=choices[0], help=help_text)
+
+
 def add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
-    parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
+    model = "crfnet2017, the method of the paper; or the folder of a model"
+    parser.add_argument("--model", type=Path, metavar="MODEL", help=model)
     parser.add_argument(
         "--prior",
         default=PRIORS[0],
         metavar="|".join((*PRIORS, "FILE")),
-        help=f"what to expect: today's cameras, any source (film, old video too), or as a JSON file says ({PRIORS[0]})",
+        help=f"responses to expect: today's cameras, any source (with film and old video), or shares in a JSON file"
+        f" (default: {PRIORS[0]})",
     )
-    parser.add_argument("--camera", metavar="NAME", help="the response of a stored camera: see crfnet camera list")
+    add_text(parser, "--camera", "NAME", "use the response of a stored camera; crfnet camera list shows them")
     parser.add_argument(
         "--taken-with",
         choices=DEVICES,
-        help="what took the photograph, if you know and its file does not say: a phone, a compact camera, a camera with"
-        " interchangeable lenses, or any other, such as a drone or one that you do not know",
+        help="kind of camera, if the file does not name it: a phone, a compact camera, a camera with interchangeable"
+        " lenses, or another or unknown one, such as a drone",
     )
-    parser.add_argument(
-        "--ignore-metadata",
-        action="store_true",
-        help="leave out what the files say of their camera and of programs that changed them",
-    )
-    parser.add_argument(
-        "--strict", action="store_true", help=f"end with exit code {NOT_TRUSTED} if a response is not to be trusted"
-    )
+    add_flag(parser, "--ignore-metadata", "ignore the camera, the programs and the encoding that the files name")
+    add_flag(parser, "--strict", f"exit code {NOT_TRUSTED} if a response is not to be trusted")
 
 
 def add_plate(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that write linear plates."""
-    parser.add_argument("--depth", choices=DEPTHS, default=DEPTHS[0], help=f"of the linear EXR ({DEPTHS[0]})")
+    add_choice(parser, "--depth", DEPTHS, "samples of the EXR files")
     parser.add_argument(
         "--exposure",
         type=exposure,
         default=Exposure(),
         metavar="STOPS|white|gray|gray=B",
-        help="gain of the linear EXR: stops; white at 1 (the default); 18 %% gray at 0.18, by its code 118 of"
-        " 255 or as picked, like gray=0.42",
+        help="gain of the linear light: a number of stops; white puts code 255 at 1 (default); gray puts code 118, and"
+        " gray=0.42 a brightness of 0.42, at 0.18",
     )
-    parser.add_argument(
-        "--primaries",
-        choices=PRIMARIES,
-        default=PRIMARIES[0],
-        help=f"of the plate; auto: as it is tagged ({PRIMARIES[0]})",
-    )
-    parser.add_argument(
-        "--output-space",
-        choices=OUTPUT_SPACES,
-        default=OUTPUT_SPACES[0],
-        help="of the linear EXR: scene_linear of our config, that is Rec.709; the plate's own primaries; or ACES"
-        f" ({OUTPUT_SPACES[0]})",
-    )
-    parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
+    add_choice(parser, "--primaries", PRIMARIES, "primaries of the plate; auto: by its tags")
+    space = "primaries of the linear EXR: scene_linear is Rec.709, as in the config that is written; plate: the plate's"
+    add_choice(parser, "--output-space", OUTPUT_SPACES, space)
+    add_flag(parser, "--overwrite", OVERWRITE)
     add_json(parser)
 
 
 def add_frames(parser: argparse.ArgumentParser, each: str) -> None:
     """Add --frames, and --each, which a text explains, with its workers."""
-    parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
-    parser.add_argument("--each", action="store_true", help=each)
-    parser.add_argument(
-        "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
-    )
-    parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="with --each: a Dask scheduler, such as tcp://10.0.0.1:8786"
-    )
-
-
-def add_json(parser: argparse.ArgumentParser) -> None:
-    """Add --json."""
-    parser.add_argument("--json", action="store_true", help="print one JSON document instead of words")
+    add_text(parser, "--frames", "SPEC", "frames, such as 1001-1100 or 1-99x2 (default: all)")
+    add_flag(parser, "--each", each)
+    workers = "with --each: processes at a time (default: one per core)"
+    parser.add_argument("--workers", type=positive, metavar="N", help=workers)
+    add_text(parser, "--scheduler", "ADDRESS", "with --each: Dask scheduler, such as tcp://10.0.0.1:8786")
 
 
 def positive(text: str) -> int:

@@ -5,8 +5,10 @@ from pathlib import Path
 
 from crfnet_core.calibration import calibrate_pairs, calibrate_stack, parse_times
 
-from ... import pipeline, report
+from ... import pipeline
 from ...options import OutputOptions
+from ...report.calibration import Measured, calibration_lines, comparison_lines
+from ...report.words import file_lines
 from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
@@ -20,17 +22,17 @@ def run(arguments: argparse.Namespace) -> None:
     comparison = calibration.compare(other) if other else None
     document = pipeline.write_calibration(plan, calibration, comparison)
     lines = [
-        *report.calibration_lines(calibration),
-        *(report.comparison_lines(comparison) if comparison else []),
+        *calibration_lines(calibration),
+        *(comparison_lines(comparison) if comparison else []),
         "",
         f"Written to {arguments.out}:",
-        *report.file_lines(plan.files, sheet="the curve, the points of every file and their residuals"),
+        *file_lines(plan.files, sheet="the curve, the points of every file and their residuals"),
         *lost_lines(plan),
     ]
     print_result(document | lost_document(plan), lines, as_json=arguments.json)
 
 
-def _measured(arguments: argparse.Namespace) -> report.Measured:
+def _measured(arguments: argparse.Namespace) -> Measured:
     """Return the response of a stack, or of raw files and their JPEGs."""
     seconds = parse_times(arguments.times) if arguments.times else None
     with progress_bar("frames") as progress:

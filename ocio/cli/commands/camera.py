@@ -6,9 +6,11 @@ from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.library import Camera, CameraLibrary, camera_document, camera_estimate, find_camera, read_calibration
 
-from ... import pipeline, report
+from ... import pipeline
 from ...luts.files import write_lut
-from .printing import print_lines, print_result
+from ...report import words
+from ...report.documents import camera_summary
+from .printing import print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -21,20 +23,18 @@ def _add(arguments: argparse.Namespace) -> None:
     """Keep the measured response of a calibration."""
     camera = read_calibration(arguments.from_calibration, arguments.name)
     path = CameraLibrary.of_user().save(camera, overwrite=arguments.overwrite)
-    if not arguments.json:
-        print_lines([f"Written: {path}."])
-    _print_camera(camera, as_json=arguments.json)
+    _print_camera(camera, f"Written: {path}.", as_json=arguments.json)
 
 
 def _list(arguments: argparse.Namespace) -> None:
     """List the user's cameras, and the ones that come with this project."""
     user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (user, shipped))
+    cameras, others = (list(map(camera_summary, library.cameras())) for library in (user, shipped))
     document = {"folder": str(user.folder), "cameras": cameras, "shipped": others, "problems": user.problems()}
     lines = [
-        f"Yours, in {user.folder}:",
+        f"Your cameras, in {user.folder}:",
         *_indented(user),
-        "Measured, with crfnet:",
+        "Packaged cameras:",
         *_indented(shipped),
         *(f"note: {problem}" for problem in user.problems()),
     ]
@@ -64,13 +64,13 @@ def _export(arguments: argparse.Namespace) -> None:
     print_result({"camera": camera.name, "written": str(out)}, [f"Written: {out}."], as_json=arguments.json)
 
 
-def _print_camera(camera: Camera, *, as_json: bool) -> None:
-    """Print a camera and how good its response is."""
+def _print_camera(camera: Camera, *first: str, as_json: bool) -> None:
+    """Print first lines, a camera, and how good its response is."""
     estimate = camera_estimate(camera)
-    document = report.camera_summary(camera) | {"estimate": estimate.to_dict()}
-    print_result(document, [report.camera_line(camera), *report.verdict_lines(estimate)], as_json=as_json)
+    document = camera_summary(camera) | {"estimate": estimate.to_dict()}
+    print_result(document, [*first, words.camera_line(camera), *words.verdict_lines(estimate)], as_json=as_json)
 
 
 def _indented(library: CameraLibrary) -> list[str]:
     """Return the cameras of a library, one line each."""
-    return [f"  {report.camera_line(camera)}" for camera in library.cameras()] or ["  none"]
+    return [f"  {words.camera_line(camera)}" for camera in library.cameras()] or ["  none"]

@@ -44,5 +44,5 @@ def _plate_lines(plates: Iterable[PlateInConfig]) -> list[str]:
     for plate in plates:
         exposure = f", {plate.exposure:+g} stops" if plate.exposure else ""
         lines.append(f"{plate.name}: {plate.lut_file}{exposure}")
-        lines += [f"  files {regex}: {space}" for regex, space in plate.rules.items()]
+        lines += [f"  file rule {regex}: {space}" for regex, space in plate.rules.items()]
     return lines

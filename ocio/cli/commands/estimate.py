@@ -8,8 +8,9 @@ from typing import Any
 
 from crfnet_core.posterior import Verdict
 
-from ... import pipeline, report
+from ... import pipeline
 from ...options import OutputOptions
+from ...report import words
 from ..arguments.parts import NOT_TRUSTED
 from .each import check_each, estimate_options, plate_options, run_each
 from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
@@ -41,7 +42,7 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
         if outputs.has_sheet:
             loader.submit(import_module, "crfnet.report.sheet")  # matplotlib, on another core
         estimated = pipeline.estimate_files(sources, options, progress=progress)
-    light = pipeline.estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
+    light = pipeline.estimated_light(estimated, plan.plates)
     document = pipeline.deliver_estimate(plan, estimated, light)
     printed = {"folder": str(arguments.out), "estimates": [document], **lost_document(plan)}
     print_result(printed, _lines(estimated, document, plan), as_json=arguments.json)
@@ -52,12 +53,12 @@ def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: 
     """Return what was read, estimated and written, for people."""
     return [
         *estimated.movies,
-        *(str(photograph.report) for photograph in estimated.photographs),
-        *report.verdict_lines(estimated.estimate),
-        *report.light_lines(document),
-        *report.offer_lines(estimated.offers),
+        *(str(photograph.entry) for photograph in estimated.photographs),
+        *words.verdict_lines(estimated.estimate),
+        *words.light_lines(document),
+        *words.offer_lines(estimated.offers),
         "",
         f"Written to {plan.files.report.parent}:",
-        *report.file_lines(plan.files),
+        *words.file_lines(plan.files),
         *lost_lines(plan),
     ]

@@ -6,7 +6,7 @@ from pathlib import Path
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.posterior import Verdict
 
-from ... import pipeline, report
+from ... import pipeline
 from ...luts.response import read_response
 from ...luts.rgb_lut import AnyLut
 from ...movies.source import PlateSource, find_source, movie_of
@@ -14,6 +14,8 @@ from ...movies.stream import check_progressive
 from ...output_files import check_folder, output_folder
 from ...plates.frame_pattern import FramePattern
 from ...plates.linear import linear_targets, linearize_plates
+from ...report import words
+from ...report.documents import plate_document
 from ..arguments.parts import NOT_TRUSTED
 from ..remedies import CommandError
 from .each import check_each, estimate_options, plate_options, run_each
@@ -48,9 +50,9 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
     lut, estimate, lines = _response(sequence, arguments)
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
-    document = report.plate_document(done, estimate)
+    document = plate_document(done, estimate)
     read = {"movie": str(movie)} if movie else {}
-    lines = [*read.values(), *lines, *report.light_lines(document), *report.plate_lines(done)]
+    lines = [*read.values(), *lines, *words.light_lines(document), *words.plate_lines(done)]
     print_result(document | read, lines, as_json=arguments.json)
     return [estimate.verdict] if estimate else []
 
@@ -71,8 +73,8 @@ def _response(
         inverted = [f"{response.path.name}: {response.words}; its inverse is used."] if response.was_forward else []
         return response.lut, None, inverted
     options = estimate_options(arguments)
-    estimate = pipeline.load_camera_response(options)
-    if estimate is None:
-        with progress_bar("windows") as progress:
-            estimate = pipeline.estimate_files([sequence], options, progress=progress).estimate
-    return pipeline.response_lut(estimate), estimate, [report.source_line(estimate), *report.verdict_lines(estimate)]
+    if stored := pipeline.load_camera_response(options):
+        return pipeline.response_lut(stored), stored, words.verdict_lines(stored)
+    with progress_bar("windows") as progress:
+        estimate = pipeline.estimate_files([sequence], options, progress=progress).estimate
+    return pipeline.response_lut(estimate), estimate, [words.source_line(estimate), *words.verdict_lines(estimate)]

@@ -60,17 +60,12 @@ def _font_folder() -> str:
     return str(folder)
 
 
-def print_lines(lines: Iterable[str]) -> None:
-    """Print lines; every word of the command goes this way, but for JSON and errors."""
-    sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
-
-
 def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:
     """Print a JSON document, or the same in lines."""
     if as_json:
         sys.stdout.write(json_text(document))
     else:
-        print_lines(lines)
+        sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
 def lost_document(plan: OutputPlan) -> dict[str, Any]:
@@ -85,8 +80,8 @@ def lost_lines(plan: OutputPlan) -> list[str]:
     which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
     config = plan.files.config
     return [
-        f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
-        f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
+        f"Warning: {config.name} was replaced and no longer has {which}; a config with both is written by"
+        f" crfnet config add --base {shlex.quote(str(config))} --out FOLDER ESTIMATE, the JSON of the other."
     ]
 
 

@@ -9,7 +9,7 @@ import pytest
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS
 
-COMMANDS = ("estimate", "linearize", "info")
+COMMANDS = ("estimate", "linearize", "calibrate", "camera", "config", "info")
 
 
 class TestHelp:
@@ -34,7 +34,7 @@ class TestInfo:
         document = json.loads(crfnet("info", look / "plate.spi1d", "--json").out)
         assert (document["kind"], document["length"], document["domain"]) == ("lut", 4081, [0, 1])
         *_, trust, primaries = document["provenance"]
-        assert "prior: camera; file metadata used: " in trust
+        assert "Prior: camera; metadata: " in trust
         assert primaries.startswith("Primaries: Rec.709")
 
 

@@ -38,7 +38,7 @@ def test_writes_what_it_says(camera):
     assert set(listed(folder)) == FILES
     assert all(name in out for name in FILES)
     assert "6 frames of Canon EOS 20D, ISO 100, f/8, 1/60 s to 0.5 s (5.0 stops)." in out
-    assert "The response is measured: the shape of the linear light to 0.0" in out
+    assert "\nStandard deviations: shape 0.0" in out
     assert "The other response is off by " in out
     assert "Warning" not in out
 

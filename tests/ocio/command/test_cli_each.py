@@ -62,26 +62,25 @@ def test_processes_write_the_same_bytes_as_one(estimate, crfnet, fixed_model, ph
     assert without_records(tree(tmp_path / "two")) == without_records(tree(tmp_path / "out"))
 
 
-def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_path):
+def test_a_bad_photograph_stops_no_other_and_a_second_run_does_only_what_is_left(
+    estimate, photographs, tmp_path, monkeypatch
+):
     (photographs / "bad.jpg").write_bytes(b"no photograph")
     done = estimate(photographs, *QUICK)
-    assert done.refusal == "photographs_failed"
-    assert sum(", expected error " in line for line in done.out.splitlines()) == 3
+    assert (done.refusal, sum(", expected error " in line for line in done.out.splitlines())) == (
+        "photographs_failed",
+        3,
+    )
     assert [bool(record["error"]) for record in records_in(tmp_path / "out")] == [False, False, True, False]
     assert "CRF bad" not in (tmp_path / "out" / "config.ocio").read_text()
-
-
-def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, monkeypatch):
-    (photographs / "bad.jpg").write_bytes(b"no photograph")
-    estimate(photographs, *QUICK)
     before = tree(tmp_path / "out")
     shutil.copy(photographs / "a.jpg", photographs / "bad.jpg")
     shutil.copy(photographs / "a.jpg", photographs / "c.jpg")
-    worked_on, done = [], each.EstimateBatch.done
+    worked_on, write_files = [], each.EstimateBatch.done
 
     def count(batch, task):
         worked_on.append(task.photo.name)
-        return done(batch, task)
+        return write_files(batch, task)
 
     monkeypatch.setattr(each.EstimateBatch, "done", count)
     assert estimate(photographs, *QUICK).code == 0

@@ -10,15 +10,16 @@ import pytest
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS, read_lut
 from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
-from tests.helpers.images import read_image, write_image
+from tests.helpers.images import write_image
 
 FILES = {*(f"plate{suffix}" for suffix in WRITERS), "config.ocio", "plate_linear.exr", "plate_sheet.png", "plate.json"}
 
 
 def test_says_what_it_read_found_and_wrote(crfnet, plate, fixed_model, tmp_path):
     out = crfnet("estimate", plate, "--out", tmp_path / "look", "--model", fixed_model).out
-    parts = ("plate.jpg: 672 x 378, 8 bits", "The estimate is ", "\nPrior: camera; file metadata used: ", "10 windows")
+    parts = ("plate.jpg: 672 x 378, 8 bits", "The estimate is ", "\nPrior: camera; metadata: ", "10 analyzed windows")
     assert all(part in out for part in (*parts, *FILES))
     assert set(listed(tmp_path / "look")) == FILES
 
@@ -84,7 +85,7 @@ def test_several_photographs_make_one_response(estimate, plate, tmp_path):
     out = estimate(plate, other).out
     names = set(listed(tmp_path / "out"))
     assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
-    assert " of 20 windows agree" in out
+    assert " of 20 analyzed windows agree" in out
 
 
 @pytest.mark.parametrize("name", ["a\\b.jpg", f"{'写' * 80}.jpg", "a$b%20#1.jpg", "q'u\"o.jpg", "[1,  2].jpg"])
@@ -132,16 +133,6 @@ def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model
     assert not (tmp_path / "plate_sheet.png").exists()
 
 
-def test_exposure_goes_into_the_plate_and_the_config(estimate, plate, tmp_path, look, oiiotool, tolerance):
-    assert estimate(plate, "--exposure", "2", "--depth", "float").code == 0
-    brighter = read_image(tmp_path / "out" / "plate_linear.exr")
-    np.testing.assert_allclose(brighter, 4 * read_image(look / "plate_linear.exr"), rtol=1e-6)
-    config = tmp_path / "out" / "config.ocio"
-    convert = ("--colorconvert", "CRF plate", "scene_linear")
-    oiiotool("--colorconfig", config, plate, *convert, "-d", "float", "-o", tmp_path / "converted.exr")
-    np.testing.assert_allclose(read_image(tmp_path / "converted.exr"), brighter, atol=4 * tolerance.plate)
-
-
 @pytest.mark.parametrize(("device", "words"), [("phone", "a phone"), ("other", "a camera")])
 def test_the_user_may_state_the_device(estimate, plate, device, words):
     assert f"\nPrior: camera; you and the file say: taken with {words}, " in estimate(plate, "--taken-with", device).out
@@ -149,3 +140,34 @@ def test_the_user_may_state_the_device(estimate, plate, device, words):
     (metadata,) = document["estimates"][0]["metadata"]
     assert metadata["is_told"]
     assert (metadata["device"] == "phone") == (device == "phone")
+
+
+def test_color_spaces_that_a_replaced_config_no_longer_has_are_named(estimate, crfnet, plate, tmp_path):
+    other, out = tmp_path / "other.jpg", tmp_path / "out"
+    other.write_bytes(plate.read_bytes())
+    assert "was replaced" not in estimate(plate, "--no-linear").out
+    assert "was replaced" not in estimate(plate, "--no-linear", "--overwrite").out
+    words = 'Warning: config.ocio was replaced and no longer has "CRF plate"; '
+    assert words in estimate(other, "--no-linear", "--overwrite").out
+    both = tmp_path / "both"
+    assert crfnet("config", "add", "--base", out / "config.ocio", "--out", both, out / "plate.json").code == 0
+    config = loaded(both / "config.ocio")
+    assert {"CRF plate", "CRF other"} < set(config.getColorSpaceNames())
+    printed = estimate(plate, "--no-linear", "--overwrite", "--json").out
+    assert json.loads(printed)["dropped"] == ["CRF other"]
+
+
+@pytest.mark.parametrize("content", [b"no config", b"ocio_profile_version: \xe4\xff"])
+def test_a_config_that_nobody_can_read_is_replaced(estimate, plate, out, content):
+    (out / "config.ocio").write_bytes(content)
+    done = estimate(plate, "--no-linear", "--overwrite")
+    assert (done.code, done.err) == (0, "")
+    assert "CRF plate" in loaded(out / "config.ocio").getColorSpaceNames()
+
+
+def test_a_config_with_names_that_are_not_utf_8_is_replaced(estimate, plate, tmp_path):
+    estimate(plate, "--no-linear")
+    config = tmp_path / "out" / "config.ocio"
+    config.write_bytes(config.read_bytes().replace(b"CRF plate", b"CRF pl\xe4te"))
+    assert estimate(plate, "--no-linear", "--overwrite").code == 0
+    assert "CRF plate" in loaded(config).getColorSpaceNames()

@@ -52,7 +52,7 @@ class TestExposure:
         np.testing.assert_array_equal(read_image(tmp_path / "out" / "plate_linear.exr"), given)
         found = json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))["exposure"]
         assert found["stops"] == 0
-        assert f"is then {found['gray_linear']:.3f}; --exposure gray would make it 0.18" in out
+        assert f"(18 % gray by convention) at {found['gray_linear']:.3f}; --exposure gray puts it at 0.18" in out
 
     @pytest.mark.parametrize(
         ("word", "words"),

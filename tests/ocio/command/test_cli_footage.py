@@ -15,22 +15,21 @@ def as_file(path, pixels, **attributes):
     return write_image(path, np.rint(pixels * 255).astype(np.uint8), **attributes)
 
 
-def test_log_footage_is_answered_with_the_curves_that_fit(crfnet, tmp_path):
-    path = as_file(tmp_path / "vlog.png", log_picture("Panasonic V-Log"), Make="Panasonic", Model="DC-S5")
+@pytest.mark.parametrize(
+    ("pixels", "kind", "words", "curves"),
+    [
+        (log_picture("Panasonic V-Log"), "log footage", 'in ACES configs "V-Log V-Gamut"', ["Panasonic V-Log"]),
+        ((16 + 219 * ordinary_picture().astype(float)) / 255, "limited range", "in_range=limited:out_range=full", []),
+    ],
+    ids=["log", "limited"],
+)
+def test_other_pictures_are_answered_with_what_helps(crfnet, tmp_path, pixels, kind, words, curves):
+    path = as_file(tmp_path / "a.png", pixels, Make="Panasonic", Model="DC-S5")
     done = crfnet("estimate", path, "--out", tmp_path / "look", "--no-sheet")
-    assert done.code == 0
-    assert 'in ACES configs "V-Log V-Gamut"' in done.out
-    found = json.loads((tmp_path / "look" / "vlog.json").read_text(encoding="utf-8"))
-    assert (found["verdict"], found["recognition"]["kind"]) == ("do not trust", "log footage")
-    assert found["recognition"]["curves"] == ["Panasonic V-Log"]
-
-
-def test_limited_range_is_answered_with_the_option_of_ffmpeg(crfnet, tmp_path):
-    limited = (16 + 219 * ordinary_picture().astype(float)) / 255
-    done = crfnet("estimate", as_file(tmp_path / "a.png", limited), "--out", tmp_path / "look", "--no-sheet")
-    assert "scale=in_range=limited:out_range=full" in done.out
+    assert (done.code, words in done.out) == (0, True)
     found = json.loads((tmp_path / "look" / "a.json").read_text(encoding="utf-8"))
-    assert found["recognition"]["kind"] == "limited range"
+    assert (found["verdict"], found["recognition"]["kind"]) == ("do not trust", kind)
+    assert found["recognition"]["curves"] == curves
 
 
 @pytest.mark.parametrize("command", ["estimate", "linearize"])

@@ -1,30 +1,22 @@
-"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate."""
+"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate; oiiotool gives the same."""
 
 import json
 
 import numpy as np
+import pytest
 
 from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.forward import forward_lut
 from tests.helpers.images import read_image, write_image
 
 
-def test_a_sequence_with_a_gap(crfnet, look, frames):
-    lut = ("--lut", look / "plate.spi1d")
-    done = crfnet("linearize", frames / "shot.####.jpg", *lut, "--out", frames / "linear" / "shot.%04d.exr")
-    assert done.code == 0
-    assert "4 frames" in done.out
-    assert "Missing frames: 4." in done.out
-    assert len(list((frames / "linear").iterdir())) == 4
-
-
 def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
-    arguments = ("linearize", frames / "shot.####.jpg", "--out", frames / "l.####.exr", "--model", fixed_model)
-    done = crfnet(*arguments)
+    out = frames / "linear"
+    done = crfnet("linearize", frames / "shot.####.jpg", "--out", out / "l.%04d.exr", "--model", fixed_model)
     assert done.code == 0
     assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
-    assert "\nPrior: camera; file metadata used: " in done.out
-    pixels = [read_image(frames / f"l.{number:04d}.exr") for number in (1, 5)]
+    assert all(words in done.out for words in ("\nPrior: camera; metadata: ", "4 frames", "Missing frames: 4."))
+    pixels = [read_image(out / f"l.{number:04d}.exr") for number in (1, 5)]
     np.testing.assert_array_equal(*pixels)
 
 
@@ -42,7 +34,7 @@ def test_goes_on_where_it_stopped(crfnet, look, frames):
 def test_says_what_was_left_alone(crfnet, look, plate, tmp_path):
     arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "a.exr")
     crfnet(*arguments)
-    assert "left alone (add --overwrite otherwise)" in crfnet(*arguments).out
+    assert "left alone (--overwrite replaces them)" in crfnet(*arguments).out
     *light, written = crfnet(*arguments, "--overwrite").out.splitlines()
     assert written == f"Written: {tmp_path / 'a.exr'}."
     assert [line.partition(":")[0] for line in light] == ["Primaries", "Exposure"]
@@ -68,3 +60,25 @@ def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     assert np.abs(read_image(tmp_path / "a.exr") - read_image(tmp_path / "b.exr")).max() < 1e-4
     document = json.loads(crfnet("info", forward, "--json").out)
     assert (document["direction"], document["converts"]) == ("forward", ["irradiance", "brightness"])
+
+
+def test_linearize_equals_the_plate_of_estimate(linear, look):
+    np.testing.assert_array_equal(linear, read_image(look / "plate_linear.exr"))
+
+
+@pytest.mark.parametrize("suffix", ["spi1d", "cube", "clf"])
+def test_oiiotool_with_the_lut(linear, look, plate, oiiotool, tolerance, tmp_path, suffix):
+    out = tmp_path / "out.exr"
+    oiiotool(plate, "--ociofiletransform", look / f"plate.{suffix}", "-d", "float", "-o", out)
+    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
+
+
+@pytest.mark.parametrize(
+    ("rule", "convert"), [((), ("--colorconvert", "CRF plate", "scene_linear")), (("--autocc",), ())]
+)
+def test_oiiotool_with_the_config_and_with_its_file_rule(
+    linear, look, plate, oiiotool, tolerance, tmp_path, rule, convert
+):
+    out = tmp_path / "out.exr"
+    oiiotool("--colorconfig", look / "config.ocio", *rule, plate, *convert, "-d", "float", "-o", out)
+    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)

@@ -5,12 +5,20 @@ import pytest
 
 from crfnet.configs.portable import portable_config
 from crfnet.luts.files import write_lut
+from tests.helpers.configs import LUT
 from tests.helpers.looks import OTHER_LUT, write_look
 
 
 @pytest.fixture
 def small_look(tmp_path):
     return write_look(tmp_path / "look")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with the LUT of `SPACE`."""
+    write_lut(tmp_path / "plate01.spi1d", LUT)
+    return tmp_path
 
 
 @pytest.fixture

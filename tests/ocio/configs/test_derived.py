@@ -48,22 +48,20 @@ def assert_same(result, expected):
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
-class TestBuiltIn:
-    def test_all_of_it_is_kept_and_the_plate_is_right_in_aces(self, name, small_look, tmp_path):
-        result = loaded(add(name, tmp_path / "show", small_look).path)
-        assert all_names(result) == all_names(OCIO.Config.CreateFromBuiltinConfig(name))
-        pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
-        expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
-        np.testing.assert_allclose(converted(result, NAME, "aces_interchange", pixels), expected, atol=1e-5)
-
-    def test_only_the_plates_own_files_change_their_space(self, name, small_look, tmp_path):
-        base = OCIO.Config.CreateFromBuiltinConfig(name)
-        result = loaded(add(name, tmp_path / "show", small_look).path)
-        assert [space_of(result, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
-        for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
-            assert result.getColorSpace(space_of(result, path)).getName().startswith("Linear Rec.709")
-        for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
-            assert space_of(result, path) == space_of(base, path)
+def test_all_of_a_built_in_config_is_kept_the_plate_is_right_in_aces_and_only_its_files_change(
+    name, small_look, tmp_path
+):
+    base = OCIO.Config.CreateFromBuiltinConfig(name)
+    result = loaded(add(name, tmp_path / "show", small_look).path)
+    assert all_names(result) == all_names(base)
+    pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
+    expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
+    np.testing.assert_allclose(converted(result, NAME, "aces_interchange", pixels), expected, atol=1e-5)
+    assert [space_of(result, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
+    for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
+        assert result.getColorSpace(space_of(result, path)).getName().startswith("Linear Rec.709")
+    for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
+        assert space_of(result, path) == space_of(base, path)
 
 
 class TestBase:
@@ -240,7 +238,7 @@ class TestFolder:
     def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
         (tmp_path / "show").mkdir()
         (tmp_path / "show" / name).write_text("mine")
-        with refused(ConfigError, "output_exists"):
+        with refused(PlateError, "file_exists"):
             add(STUDIO, tmp_path / "show", small_look)
         assert listed(tmp_path / "show") == [name]
         add(STUDIO, tmp_path / "show", small_look, overwrite=True)

@@ -11,7 +11,6 @@ from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_sp
 from crfnet.configs.portable import portable_config
 from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError
-from crfnet.luts.files import write_lut
 from crfnet_core.colorimetry import AP0, DISPLAY_P3, REC709, conversion_matrix
 from tests.helpers.configs import LUT, SPACE, converted, loaded
 from tests.helpers.refusals import refused
@@ -48,12 +47,6 @@ def added(config, *spaces):
     config.addSearchPath(".")
     add_plate_color_spaces(config, spaces)
     return config
-
-
-@pytest.fixture
-def folder(tmp_path):
-    write_lut(tmp_path / "plate01.spi1d", LUT)
-    return tmp_path
 
 
 @pytest.mark.parametrize(

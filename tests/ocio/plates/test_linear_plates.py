@@ -8,6 +8,7 @@ import pytest
 
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
+from crfnet.luts.rgb_lut import lut_identity
 from crfnet.plates.exr import STANDARD_NAMES
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr
@@ -110,7 +111,7 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
     assert result["FNumber"] == pytest.approx(2.8)
     assert result["ExposureTime"] == pytest.approx(0.02)
     assert result["crfnet:exposure"] == 0
-    assert result["crfnet:lut"] == LUT.identity
+    assert result["crfnet:lut"] == lut_identity(LUT)
     assert not {"ICCProfile", "Exif:ColorSpace", "Software"} & set(result)
 
 
