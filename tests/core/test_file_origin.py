@@ -38,6 +38,8 @@ def test_shape_of_the_picture(width, height, shape):
         (324, 324, OWN_CAMERA | {"exif_size": (2160, 2160)}, True),
         (7008, 4400, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),  # made larger, and cut
         (2000, 2000, OWN_CAMERA | {"exif_size": (3504, 2336)}, None),  # cut
+        (3504, 2336, OWN_CAMERA | {"exif_size": (3520, 2346)}, None),  # cut by a few pixels
+        (3504, 2336, OWN_CAMERA | {"exif_size": (160, 120)}, False),  # of the thumbnail
         (1024, 768, OWN_CAMERA | {"exif_size": (1024, 768), "software": "GIMP 2.8"}, True),
         (6000, 4000, OWN_CAMERA | {"exif_size": (6000, 4000), "software": "GIMP 2.8"}, False),
         *((5168, 3448, {}, False), (4240, 2830, {}, None), (2048, 1536, {}, True)),
@@ -70,6 +72,8 @@ IJG_FINE = {"luma_table": scaled_table(ANNEX_K_LUMA, 99)}
         (IJG | {"make": "Apple", "model": "iPhone 6", "has_jfif": True}, None),
         *((OWN_CAMERA | {"has_adobe": True}, True), (OWN_CAMERA | {"software": "darktable 3.4"}, True)),
         *((OWN_CAMERA | {"exif_size": (7008, 4672)}, True), (IJG, True), (IJG_FINE, None)),
+        (OWN_CAMERA | {"raw_file": "DSC_0001.JPG"}, False),  # named where Lightroom saves its ratings
+        (OWN_CAMERA | {"raw_file": "DSC_0001.NEF", "history": ("Adobe DNG Converter",)}, False),
         *(({"luma_table": OWN_TABLE}, None), ({}, None), ({"file_format": "PNG"}, None)),
     ],
 )
@@ -91,6 +95,7 @@ def test_saved_again_or_not(fields, is_resaved):
         ({"software": "Ver.1.00"}, False),
         ({"software": "Ver.1.00", "history": ("Adobe DNG Converter 9.8",), "raw_file": "_DSC9957.NEF"}, False),
         ({"software": "Adobe DNG Converter 9.8", "history": ("darktable 3.4",), "raw_file": "_DSC9957.NEF"}, True),
+        ({"software": "Adobe Photoshop CC", "history": ("Adobe DNG Converter 9",), "raw_file": "_DSC9957.DNG"}, True),
     ],
 )
 def test_developed_from_a_raw_file_or_not(fields, is_developed):

@@ -77,20 +77,22 @@ def test_adobes_segment_names_an_editor_where_no_text_does(tmp_path):
     assert file_origin(read(tmp_path / "a.jpg")).editor == ADOBE
 
 
-def test_xmp_names_programs_and_the_raw_file(tmp_path):
+@pytest.mark.parametrize("changed", ["/", "/metadata"])
+def test_xmp_names_programs_that_saved_pixels_and_the_raw_file(tmp_path, changed):
     xmp = (
         b'http://ns.adobe.com/xap/1.0/\0<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf='
         b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
         b' xmlns:stEvt="http://ns.adobe.com/xap/1.0/sType/ResourceEvent#" crs:RawFileName="_DSC0001.NEF"'
         b' xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/"><xmpMM:History><rdf:Seq>'
-        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)"/></rdf:Seq>'
+        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)" stEvt:changed="%b"/></rdf:Seq>'
         b"</xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
-    )
+    ) % changed.encode()
     path = tmp_path / "a.jpg"
     path.write_bytes(with_jpeg_segment(jpeg(path, Software="Ver.1.0"), 0xE1, xmp))
     metadata = read(path)
-    assert (metadata.history, metadata.raw_file) == (("Adobe Photoshop CC (Macintosh)",), "_DSC0001.NEF")
-    assert file_origin(metadata).editor == "Adobe Photoshop CC (Macintosh)"
+    programs = () if changed == "/metadata" else ("Adobe Photoshop CC (Macintosh)",)
+    assert (metadata.history, metadata.raw_file) == (programs, "_DSC0001.NEF")
+    assert file_origin(metadata).editor == (programs or (ADOBE,))[0]
     assert file_origin(metadata).is_developed
 
 

@@ -26,7 +26,7 @@ class FileMetadata:
     make: str = ""  # EXIF Make and Model: the camera, as it writes itself
     model: str = ""
     software: str = ""  # EXIF Software: the program that wrote the file last, or the camera's firmware
-    history: tuple[str, ...] = ()  # programs in the XMP history (stEvt:softwareAgent), the first first
+    history: tuple[str, ...] = ()  # programs in the XMP history (stEvt:softwareAgent) that saved pixels, in order
     raw_file: str = ""  # XMP crs:RawFileName: the file that a program of Adobe developed; it may be an ordinary picture
     renderer: str = ""  # the program that rendered the picture, so that no camera took it
     iso: int | None = None  # EXIF PhotographicSensitivity
@@ -51,7 +51,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     """Return the metadata in an open file's header, and in the segments of a JPEG; damaged fields stay empty."""
     jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
-    history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
+    history = "" if _keeps_pixels(header) else _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     color = header_color_tags(header, file_format, jpeg.interop_index)
     return replace(
         jpeg,
@@ -68,6 +68,11 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         file_format=file_format,
         color=with_dpx_transfer(color, _text(header, "dpx:Transfer")),
     )
+
+
+def _keeps_pixels(header: Any) -> bool:
+    """Return whether programs saved nothing but metadata, such as ratings, by all that the XMP history names."""
+    return (_text(header, "stEvt:action"), _text(header, "stEvt:changed")) == ("saved", "/metadata")
 
 
 def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:

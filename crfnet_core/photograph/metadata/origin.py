@@ -22,8 +22,10 @@ ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".h
 #: it. 18:9 to 20:9 are the screens of phones.
 SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "2:1": (2.1, 0.07)}
 
-#: How far a scaled picture may be from the shape in EXIF, since its sides are rounded; farther off, it was cut.
-SAME_SHAPE = 0.02
+#: How far a scaled picture may be from the shape in EXIF, since its sides are rounded; farther off, it was cut. A
+#: picture that is smaller by less lost a few pixels at its border, and one that is larger than MOST_ENLARGED times the
+#: size in EXIF was not enlarged: some cameras write the size of the thumbnail.
+SAME_SHAPE, MOST_ENLARGED = 0.02, 8
 
 #: Longest side in pixels below which a picture counts as scaled, unless EXIF has the same size and both sides are whole
 #: blocks: the smallest size of cameras of the last fifteen years has 1600 pixels, the sizes of web pages end at 1280.
@@ -98,10 +100,10 @@ class FileOrigin:
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
     device = device_of(metadata.make, metadata.model)
-    is_adobes = metadata.has_adobe or bool(metadata.raw_file)
-    editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
+    is_adobes = metadata.has_adobe or (bool(metadata.raw_file) and encoded_by is not False)
+    editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
     origin = FileOrigin(
         device=device,
@@ -143,9 +145,8 @@ def picture_shape(width: int, height: int) -> str:
 
 
 def _is_developed(metadata: FileMetadata, editor: str) -> bool:
-    """Return whether a program developed the photograph from a raw file; DNG Converter keeps the camera's picture."""
-    programs = " ".join((metadata.software, *metadata.history)).casefold()
-    if metadata.raw_file and "dng converter" not in programs:
+    """Return whether a program developed the photograph from a raw file."""
+    if editor and metadata.raw_file:
         return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
     return is_developer(editor)
 
@@ -167,14 +168,14 @@ def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | N
 def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
     shorter, longer = size = tuple(sorted((metadata.width, metadata.height)))
-    exif_size = tuple(sorted(metadata.exif_size or size))
+    exif_size = tuple(sorted(_size_taken(metadata) or size))
     if shorter <= 0:
         return None
     if exif_size != size:
         return _is_scaled_from(exif_size, size)
     is_small, is_web_size = longer < SCALED_BELOW, longer in WEB_SIDES
     is_in_blocks = longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
-    names_size = metadata.exif_size is not None and metadata.has_camera
+    names_size = _size_taken(metadata) is not None and metadata.has_camera
     if names_size and not is_changed and (is_in_blocks or not (is_small or is_web_size)):
         return False  # not after a change: programs that scale may rewrite the size in EXIF
     if metadata.file_format in FOOTAGE:
@@ -185,9 +186,18 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     return False if is_native else None
 
 
+def _size_taken(metadata: FileMetadata) -> tuple[int, int] | None:
+    """Return the size of the picture in EXIF; None without one, and for the size of a thumbnail."""
+    size = metadata.exif_size
+    is_thumbnail = size is not None and max(size) * MOST_ENLARGED < max(metadata.width, metadata.height)
+    return None if is_thumbnail else size
+
+
 def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | None:
     """Return whether a picture was scaled from another size, both (shorter, longer) side; None if it was cut."""
     ratios = now[0] / before[0], now[1] / before[1]
+    if 1 - SAME_SHAPE < min(ratios) and max(ratios) <= 1:
+        return None
     return True if ratios[1] > 1 or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
 
 
@@ -228,7 +238,7 @@ def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     """Return the scaling in words; empty without any."""
     if not origin.is_scaled:
         return ""
-    size, before = (metadata.width, metadata.height), metadata.exif_size
+    size, before = (metadata.width, metadata.height), _size_taken(metadata)
     now = "{} x {} pixels".format(*size)
     if before and sorted(before) != sorted(size):
         return "scaled from {} x {} to {} after the camera wrote it".format(*before, now)
