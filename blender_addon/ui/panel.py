@@ -12,7 +12,7 @@ from ..scene.nodes import compositor, links
 from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
-from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
+from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence, CRF_OT_show_plate
 from .more.add_look import CRF_OT_add_look
 from .more.load_lut import CRF_OT_load_lut
 from .more.other_plates import CRF_OT_copy_response
@@ -48,6 +48,8 @@ class ResponsePanel:
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
             if plates.is_tiled(datablock):
                 layout.operator(CRF_OT_read_as_sequence.bl_idname, icon="SEQUENCE")
+            elif CRF_OT_show_plate.poll(context):
+                layout.operator(CRF_OT_show_plate.bl_idname, icon="LOOP_BACK")
         else:
             layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
@@ -128,9 +130,24 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
         state, state_icon = "Changed settings count once they are applied.", "INFO"
     layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
     draw_text(layout, state, letters, icon=state_icon)
+    if has_been and settings.apply == "NODES":
+        draw_text(layout, _place(context, datablock), letters, icon="BLANK1")
     _draw_settings(layout, context, datablock)
     if has_been and settings.apply != "EXPORT":
         draw_view(layout, context, has_nodes=settings.apply == "NODES")
+
+
+def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:
+    """Return where the nodes of an applied plate in the compositor show it, or how they come to; empty in a shader."""
+    groups = [node for node in links.groups_of(datablock, context.scene) if node.bl_idname == "CompositorNodeGroup"]
+    behind = [node for group in groups for node in links.nodes_behind(group)]
+    if compositor.is_switched_off(context.scene):
+        return "The compositor is switched off: tick Use Nodes."
+    if any(compositor.is_output(node, context.scene) for node in behind):
+        return "It is in the compositor: F12 renders it."
+    if any(node.type == "VIEWER" for node in behind):
+        return "A Viewer in the compositor shows it; the render does not. Link it to what goes to the output."
+    return "Its node group in the compositor leads nowhere: link it on." if groups else ""
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:

@@ -169,12 +169,17 @@ class Panel:
 
 def drawn_in(image, in_editor):
     """What the panel of an Image Editor draws for an image."""
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        return drawn_here()
+
+
+def drawn_here():
+    """What the panel of the active editor draws."""
     from blender_addon.ui.panel import ResponsePanel
 
     panel = Panel()
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        ResponsePanel.draw(panel, bpy.context)
+    ResponsePanel.draw(panel, bpy.context)
     return panel.layout.drawn
 
 

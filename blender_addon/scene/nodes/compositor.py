@@ -107,6 +107,11 @@ def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
     return output_of(tree) is not None and not any(n.outputs["Image"].is_linked for n in _sources(tree, plate))
 
 
+def is_output(node: bpy.types.Node, scene: bpy.types.Scene) -> bool:
+    """Return whether a node is the output of a scene's compositor."""
+    return node.type == "COMPOSITE" or (IS_BLENDER_5 and node == output_of(scene.compositing_node_group))
+
+
 def is_switched_off(scene: bpy.types.Scene) -> bool:
     """Return whether the user has switched off the compositor of a scene, as Blender 4.5 allows."""
     return not IS_BLENDER_5 and not scene.use_nodes

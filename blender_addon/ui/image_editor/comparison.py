@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array, Float64Array
 
-#: The name of these images, which a leading dot hides in menus; the custom property with the key of their pixels.
-_NAME, _KEY = ".Camera Response Linear", "camera_response_key"
+#: The custom property of these images with the key of their pixels.
+_KEY = "camera_response_key"
 
 #: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
 _LARGEST = 65535
@@ -51,7 +51,8 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
     if not buffer.write(str(path)):
         raise AddonError(f"{path}: cannot be written: {buffer.geterror()}")
     linear = _linear_image(plate) or bpy.data.images.load(str(path))
-    linear.name, linear[COMPARED_PLATE], linear[_KEY] = _NAME, plate, key
+    linear.name = f".Linear view of {plate.name}"  # a leading dot hides it in menus
+    linear[COMPARED_PLATE], linear[_KEY] = plate, key
     linear.colorspace_settings.name = color_space
     linear.reload()
     space.image = linear
