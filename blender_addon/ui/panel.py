@@ -57,9 +57,10 @@ class ResponsePanel:
         is_stored = stored_estimate.is_stored(datablock)
         if is_stored:
             draw_estimate(layout, context, datablock)
-            _draw_apply(layout, context, datablock)
-            draw_notices(layout, context, datablock)
-            _draw_warnings(layout, context, datablock)
+            with links.trees_at_rest():
+                _draw_apply(layout, context, datablock)
+                draw_notices(layout, context, datablock)
+                _draw_warnings(layout, context, datablock)
             draw_details(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
             _draw_more(layout, is_stored=is_stored)

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find the nodes behind a node, through reroutes, other nodes and node groups, and plates linearized twice or never."""
 
-from collections.abc import Iterator
-from enum import Enum
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from typing import Any
 
 import bpy
 
@@ -15,7 +18,11 @@ PLATE = "camera_response_of"
 LOOK = "camera_response_look_of"
 
 
-class _Way(Enum):
+#: The answers of functions that are `_asked_once`, by function and argument; None but for `trees_at_rest`.
+_answers: dict[Any, Any] | None = None
+
+
+class _Way(StrEnum):
     """How a path comes to a node."""
 
     LINKED = "the path has not entered the tree of the node"
@@ -23,23 +30,61 @@ class _Way(Enum):
     LEFT = "the path has left the tree that the node holds"
 
 
-def nodes_behind(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
-    """Yield every other node that the outputs of a node lead to, nearest first.
+@contextmanager
+def trees_at_rest() -> Iterator[None]:
+    """Read every tree only once in a block that changes none, as where a panel is drawn."""
+    global _answers
+    _answers = {}
+    try:
+        yield
+    finally:
+        _answers = None
+
+
+def _asked_once(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return a function of a tree or node that keeps its answers while trees are at rest."""
+
+    def asked(about: Any) -> Any:
+        if _answers is None:
+            with trees_at_rest():
+                return asked(about)
+        if (function, about) not in _answers:
+            _answers[function, about] = function(about)
+        return _answers[function, about]
+
+    return asked
+
+
+@_asked_once
+def _plates_and_groups(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
+    """Return the nodes of a tree that show an image or clip, or hold a node group."""
+    return [node for node in tree.nodes if node.type == "GROUP" or shown_by_node(node) is not None]
+
+
+@_asked_once
+def _targets(tree: bpy.types.NodeTree) -> dict[bpy.types.Node, list[bpy.types.Node]]:
+    """Return the nodes that each node of a tree is linked to: Blender goes through all links for those of a socket."""
+    targets = defaultdict(list)
+    for link in tree.links:
+        targets[link.from_node].append(link.to_node)
+    return targets
+
+
+@_asked_once
+def nodes_behind(node: bpy.types.Node) -> list[bpy.types.Node]:
+    """Return every other node that the outputs of a node lead to, nearest first.
 
     Where the links enter a node group, the nodes in it follow; where they leave the tree of the node, the nodes behind
     every node that holds this tree. A path that entered a tree does not leave it, because other nodes that hold it,
     such as in another scene, are not behind this one.
     """
-    yielded, seen, waiting = {_key(node)}, set(), [(node, _Way.LINKED)]
-    while waiting:
-        for follower, way in _followers(*waiting.pop(0)):
-            if (_key(follower), way) in seen:
-                continue
-            seen.add((_key(follower), way))
-            waiting.append((follower, way))
-            if _key(follower) not in yielded:
-                yielded.add(_key(follower))
-                yield follower
+    steps, seen = [(node, _Way.LINKED)], {(node, _Way.LINKED)}
+    for step in steps:  # more and more
+        for follower in _followers(*step):
+            if follower not in seen:
+                seen.add(follower)
+                steps.append(follower)
+    return [other for other in dict.fromkeys(other for other, _ in steps) if other != node]
 
 
 def neighbors_behind(node: bpy.types.Node) -> list[bpy.types.Node]:
@@ -70,7 +115,7 @@ def _trees_in(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.NodeTree]:
     """Yield a tree, unless it is None, and the node groups in it."""
     if tree is not None:
         yield tree
-        for inner in {node.node_tree for node in tree.nodes if node.type == "GROUP"}:
+        for inner in {node.node_tree for node in _plates_and_groups(tree) if node.type == "GROUP"}:
             yield from _trees_in(inner)
 
 
@@ -81,12 +126,16 @@ def has_groups() -> bool:
 
 def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
     """Yield the compositor nodes of the file that show a plate or its code values."""
-    yield from (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate)
+    yield from (
+        node for tree in compositor_trees() for node in _plates_and_groups(tree) if datablock_of_node(node) == plate
+    )
 
 
 def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> list[bpy.types.Node]:
     """Return the nodes that hold a plate's node group, or look, and are not those of other scenes only."""
-    return [node for tree in trees_here(scene) for node in tree.nodes if holds_group_of(node, plate, name)]
+    return [
+        node for tree in trees_here(scene) for node in _plates_and_groups(tree) if holds_group_of(node, plate, name)
+    ]
 
 
 def holds_group_of(node: bpy.types.Node, plate: Datablock, name: str = PLATE) -> bool:
@@ -112,7 +161,7 @@ def without_group(plate: Datablock) -> str:
     The node group is muted, or it was deleted and the links around it were made again.
     """
     for node in nodes_of(plate):
-        behind = list(nodes_behind(node))
+        behind = nodes_behind(node)
         if shown_by_node(node) != plate and behind and not any(map(linearizes, behind)):
             return f'"{_title(node)}" shows code values without the node group. Apply as Nodes to mend it.'
     return ""
@@ -139,17 +188,11 @@ def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node
 
     A path does not leave a tree that it entered, nor enter at once the tree that it left.
     """
-    for output in node.outputs:
-        for link in output.links:
-            yield link.to_node, _Way.ENTERED if way is _Way.ENTERED else _Way.LINKED
+    for target in _targets(node.id_data).get(node, ()):
+        yield target, _Way.ENTERED if way is _Way.ENTERED else _Way.LINKED
     if node.type == "GROUP" and node.node_tree is not None and way is not _Way.LEFT:
         yield from ((inner, _Way.ENTERED) for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
     if node.type == "GROUP_OUTPUT" and way is not _Way.ENTERED:
         for tree in compositor_trees():
-            holders = (outer for outer in tree.nodes if getattr(outer, "node_tree", None) == node.id_data)
+            holders = (outer for outer in _plates_and_groups(tree) if getattr(outer, "node_tree", 0) == node.id_data)
             yield from ((outer, _Way.LEFT) for outer in holders)
-
-
-def _key(node: bpy.types.Node) -> tuple[int, str]:
-    """Return a key that only this node has."""
-    return node.id_data.as_pointer(), node.name
