@@ -130,8 +130,7 @@ class PlateChoices:
         name="Taken With", description="What took the plate, where you know it and its file does not say", items=DEVICES
     )
     ignore_metadata: bpy.props.BoolProperty(
-        name="Ignore Metadata",
-        description="Do not use the camera and the editing programs that the file names",
+        name="Ignore Metadata", description="Do not use the camera and the editing programs that the file names"
     )
 
 
