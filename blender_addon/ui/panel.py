@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor, and the entries of their menus."""
+"""The sidebar panel of the Image, Movie Clip, Compositor and Shader Editor, and the entries of their menus."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class ResponsePanel:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the editor can show a plate: the node editor can only as the compositor."""
-        return getattr(context.space_data, "tree_type", "CompositorNodeTree") == "CompositorNodeTree"
+        """Return whether the editor can show a plate: of the node editors, the compositor's and the shaders' can."""
+        return getattr(context.space_data, "tree_type", plates.SHADER) in plates.NODE_TREES
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
@@ -80,7 +80,7 @@ class CRF_PT_clip(ResponsePanel, bpy.types.Panel):
 
 
 class CRF_PT_node(ResponsePanel, bpy.types.Panel):
-    """The panel in the compositor."""
+    """The panel in the Compositor and the Shader Editor."""
 
     bl_space_type = "NODE_EDITOR"
 
@@ -109,6 +109,7 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
         code_values.outdated(datablock, state),
         links.linearized_twice(datablock),
         links.without_group(datablock),
+        links.in_earlier_space(datablock),
     )
     draw_paragraphs(layout, [each for each in warnings if each], letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):

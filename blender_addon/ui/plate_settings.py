@@ -176,7 +176,7 @@ def is_applied(datablock: bpy.types.ID) -> bool:
     """Return whether the estimate of a plate is applied with its present settings; in this scene, if as nodes."""
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock, bpy.context.scene)
+    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock, bpy.context)
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:

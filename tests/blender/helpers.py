@@ -11,6 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 from blender_addon.scene import plates as plates  # noqa: E402 - after the skip
 from blender_addon.scene import stored_estimate as stored_estimate  # noqa: E402
+from blender_addon.scene.nodes import compositor as compositor  # noqa: E402
 from blender_addon.scene.nodes.compositor import compositor_tree as compositor_tree  # noqa: E402
 from blender_addon.ui.image_editor import comparison as comparison  # noqa: E402
 

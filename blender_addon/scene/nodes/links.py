@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from ..plates import Datablock, datablock_of_node, shown_by_node
+from ..plates import NODE_TREES, SHADER, Datablock, datablock_of_node, shown_by_node
 
 #: The custom property of the add-on's node groups; its value is the plate's image or clip.
 PLATE = "camera_response_of"
@@ -17,6 +17,9 @@ PLATE = "camera_response_of"
 #: The same of the node groups "Camera Look".
 LOOK = "camera_response_look_of"
 
+
+#: The custom property of a shader's node group with the name of the working space that it converts to.
+WORKING_SPACE = "camera_response_working_space"
 
 #: The answers of functions that are `_asked_once`, by function and argument; None but for `trees_at_rest`.
 _answers: dict[Any, Any] | None = None
@@ -92,23 +95,28 @@ def neighbors_behind(node: bpy.types.Node) -> list[bpy.types.Node]:
     return [other for other in nodes_behind(node) if other.id_data == node.id_data]
 
 
-def compositor_trees() -> Iterator[bpy.types.NodeTree]:
-    """Yield every compositor tree of the file, node groups included."""
-    yield from (tree for tree in bpy.data.node_groups if tree.bl_idname == "CompositorNodeTree")
-    if bpy.app.version < (5, 0, 0):  # later, these are node groups, too
-        yield from (scene.node_tree for scene in bpy.data.scenes if scene.node_tree is not None)
+def node_trees() -> Iterator[bpy.types.NodeTree]:
+    """Yield every compositor and shader tree of the file, node groups included; shaders once they have a group."""
+    yield from (tree for tree in bpy.data.node_groups if tree.bl_idname in NODE_TREES)
+    owners = list(bpy.data.scenes) if bpy.app.version < (5, 0, 0) else []  # later, their trees are node groups, too
+    if any(PLATE in tree and tree.bl_idname == SHADER for tree in bpy.data.node_groups):  # a file may have thousands
+        owners += (*bpy.data.materials, *bpy.data.worlds, *bpy.data.lights, *bpy.data.linestyles)
+    yield from (owner.node_tree for owner in owners if owner.node_tree is not None)
 
 
 def trees_here(scene: bpy.types.Scene) -> list[bpy.types.NodeTree]:
-    """Return the compositor trees of the file, but for those of other scenes only, such as of a full copy of this."""
-    of_others = {tree for other in bpy.data.scenes if other != scene for tree in _trees_in(_tree_of(other))}
-    apart = of_others.difference(_trees_in(_tree_of(scene)))
-    return [tree for tree in compositor_trees() if tree not in apart]
+    """Return the node trees of the file, but for those of other scenes only, such as of a full copy of this."""
+    of_others = {tree for other in bpy.data.scenes if other != scene for tree in _trees_of(other)}
+    apart = of_others.difference(_trees_of(scene))
+    return [tree for tree in node_trees() if tree not in apart]
 
 
-def _tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree | None:
-    """Return the compositor tree of a scene, or None."""
-    return scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group
+def _trees_of(scene: bpy.types.Scene) -> Iterator[bpy.types.NodeTree]:
+    """Yield the trees of a scene's compositor, world and lights, which a full copy has of its own; not of materials."""
+    yield from _trees_in(scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group)
+    lights = {item.data for item in scene.objects if item.type == "LIGHT"}
+    for owner in filter(None, (scene.world, *lights)):
+        yield from _trees_in(owner.node_tree)
 
 
 def _trees_in(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.NodeTree]:
@@ -125,10 +133,8 @@ def has_groups() -> bool:
 
 
 def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
-    """Yield the compositor nodes of the file that show a plate or its code values."""
-    yield from (
-        node for tree in compositor_trees() for node in _plates_and_groups(tree) if datablock_of_node(node) == plate
-    )
+    """Yield the nodes of the file that show a plate or its code values."""
+    yield from (node for tree in node_trees() for node in _plates_and_groups(tree) if datablock_of_node(node) == plate)
 
 
 def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> list[bpy.types.Node]:
@@ -145,7 +151,7 @@ def holds_group_of(node: bpy.types.Node, plate: Datablock, name: str = PLATE) ->
 
 
 def linearized_twice(plate: Datablock) -> str:
-    """Return why a plate is linearized twice in a compositor of the file, and what to do; else an empty text."""
+    """Return why a plate is linearized twice in nodes of the file, and what to do; else an empty text."""
     for node in nodes_of(plate):
         groups = [other for other in nodes_behind(node) if linearizes(other)]
         if groups and shown_by_node(node) == plate and not plate.colorspace_settings.is_data:
@@ -156,7 +162,7 @@ def linearized_twice(plate: Datablock) -> str:
 
 
 def without_group(plate: Datablock) -> str:
-    """Return that a compositor of the file shows a plate's code values, and what to do; else an empty text.
+    """Return that nodes of the file show a plate's code values without its group, and what to do; else an empty text.
 
     The node group is muted, or it was deleted and the links around it were made again.
     """
@@ -165,6 +171,17 @@ def without_group(plate: Datablock) -> str:
         if shown_by_node(node) != plate and behind and not any(map(linearizes, behind)):
             return f'"{_title(node)}" shows code values without the node group. Apply as Nodes to mend it.'
     return ""
+
+
+def in_earlier_space(plate: Datablock) -> str:
+    """Return that a plate's shader nodes convert to an earlier working space, and what to do; else an empty text."""
+    spaces = {group.get(WORKING_SPACE) for group in bpy.data.node_groups if group.get(PLATE) == plate} - {None}
+    return "The working space has changed: apply as Nodes for the shaders." if spaces - {file_space()} else ""
+
+
+def file_space() -> str:
+    """Return the name of the file's working space; an empty text before Blender 5.0, where it is the config's."""
+    return getattr(getattr(bpy.data, "colorspace", None), "working_space", "")
 
 
 def linearizes(node: bpy.types.Node) -> bool:
@@ -193,6 +210,6 @@ def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node
     if node.type == "GROUP" and node.node_tree is not None and way is not _Way.LEFT:
         yield from ((inner, _Way.ENTERED) for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
     if node.type == "GROUP_OUTPUT" and way is not _Way.ENTERED:
-        for tree in compositor_trees():
+        for tree in node_trees():
             holders = (outer for outer in _plates_and_groups(tree) if getattr(outer, "node_tree", 0) == node.id_data)
             yield from ((outer, _Way.LEFT) for outer in holders)
