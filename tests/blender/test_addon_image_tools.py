@@ -103,6 +103,12 @@ def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_p
             expected = curve.inverse(np.roll(codes, number, axis=0) / 255)
             assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
             show(after=False)
+        show(after=True)
+        bpy.context.scene.frame_set(4)  # while the linear plate is shown
+        assert bpy.app.timers.is_registered(comparison.renew)
+        comparison.renew()
+        assert np.abs(pixels_of(space.image)[..., :3] - curve.inverse(np.roll(codes, 4, axis=0) / 255)).max() < 1e-6
+        show(after=False)
         bpy.context.scene.frame_set(3)
         with pytest.raises(RuntimeError, match=r"shot\.0003\.png"):
             show(after=True)

@@ -44,6 +44,11 @@ class FrameTiming:
         """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
         return any(self.offset < frame <= self.offset + self.duration for frame in frames)
 
+    def number_on(self, frame: int) -> int:
+        """Return the number of the file that is shown on a frame of the scene, as Blender does; one less before all."""
+        step = frame - self.start
+        return self.offset + 1 + (step % self.duration if self.is_cyclic else max(-1, min(step, self.duration - 1)))
+
     def set_on(self, user: ImageUser) -> None:
         """Give it to an editor or a node."""
         user.frame_duration, user.frame_start, user.frame_offset = self.duration, self.start, self.offset

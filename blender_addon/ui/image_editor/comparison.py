@@ -35,7 +35,7 @@ _LARGEST = 65535
 #: Rows that are converted at a time: few enough to stay in the processor's cache.
 _ROWS = 16
 
-#: Seconds after the last change of the exposure until linear plates are shown with it: a slider waits for none of them.
+#: Seconds after the last change of the exposure or frame until linear plates show it: no slider or player waits.
 _PAUSE = 0.2
 
 
@@ -107,6 +107,12 @@ def end_all() -> None:
         bpy.data.images.remove(image)
 
 
+def is_frame_shown() -> bool:
+    """Return whether an editor shows the linear plate of a sequence or movie."""
+    plates = (compared_plate(space.image) for space in _image_editors())
+    return any(plate is not None and plate.source != "FILE" for plate in plates)
+
+
 def renew_soon() -> None:
     """Call `renew` once this has not been called for a moment."""
     with suppress(ValueError):  # none is waiting
@@ -115,11 +121,12 @@ def renew_soon() -> None:
 
 
 def renew() -> None:
-    """Show linear plates with the present exposure, where they are shown."""
+    """Show linear plates with the present exposure and at the present frame, where they are shown."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR" and compared_plate(area.spaces.active.image) is not None:
-                with bpy.context.temp_override(window=window, area=area):
+                # the operator has reported what it cannot read, such as a missing frame
+                with bpy.context.temp_override(window=window, area=area), suppress(RuntimeError):
                     bpy.ops.crf.compare(is_after=True)
                 area.tag_redraw()
 

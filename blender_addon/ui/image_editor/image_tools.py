@@ -195,6 +195,9 @@ def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
     stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
     if comparison.show_again(space, key := _key(space.image, stops)):
         return
+    if space.image_user.use_auto_refresh:  # Blender updates the frame while the editor shows the plate only
+        timing = compositor.FrameTiming.from_user(space.image_user)
+        space.image_user.frame_current = timing.number_on(bpy.context.scene.frame_current)
     codes = comparison.code_values(space.image, space.image_user)
     pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
     comparison.begin(space, pixels, lazy_import.load(".scene.nodes.plate_group").linear_rec709(), key)
