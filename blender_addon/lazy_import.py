@@ -18,6 +18,9 @@ from .work.errors import AddonError
 _IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "PIL", "platformdirs")
 _IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
+#: The attribute of the imported package `crfnet` with its version.
+_IMPORTED = "version_imported_by_the_addon"
+
 
 def load(module: str) -> ModuleType:
     """Return a module that imports the estimator: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not.
@@ -26,14 +29,28 @@ def load(module: str) -> ModuleType:
     """
     _expose_blenders_own()
     try:
-        return importlib.import_module(module, __package__)
+        imported = importlib.import_module(module, __package__)
+        vars(importlib.import_module("crfnet")).setdefault(_IMPORTED, importlib.metadata.version("crfnet"))
+        return imported
     except ImportError as problem:
         name = (problem.name or str(problem)).partition(".")[0]
         raise AddonError(f"{name} cannot be loaded: {_remedy(name)}") from problem
 
 
-@cache
 def missing() -> str:
+    """Return, in one line, why the add-on cannot be used, and what to do; an empty text if it can.
+
+    A library is missing or of another build, or two copies of the add-on are enabled: Blender uses the older one or the
+    newer one, whichever it has enabled last.
+    """
+    name = str(__package__).rpartition(".")[2]
+    modules = [addon.module for addon in bpy.context.preferences.addons]
+    copies = [module for module in modules if module.rpartition(".")[2] == name]
+    return f"the add-on is installed twice: remove {' or '.join(copies)}" if len(copies) > 1 else _missing_library()
+
+
+@cache
+def _missing_library() -> str:
     """Return, in one line, which library is missing or of another build, and what to do; an empty text if none is.
 
     It looks for the libraries once and imports none of them, so it does not notice one that is damaged.
@@ -46,11 +63,12 @@ def missing() -> str:
 def _of_another_build() -> str:
     """Return, in one line, that the estimator is not the one of this zip; an empty text if it is, or for the sources.
 
-    Blender replaces the wheels of an add-on when the next session starts.
+    Blender replaces the wheels of an add-on at an update or when the next session starts, but keeps what is imported.
     """
     manifest = tomllib.loads(Path(__file__).with_name("blender_manifest.toml").read_text(encoding="utf-8"))
     (wheel,) = (name for name in manifest["wheels"] if "/crfnet-" in name)
-    expected, installed = wheel.split("-")[1], importlib.metadata.version("crfnet")
+    imported = vars(sys.modules["crfnet"]).get(_IMPORTED) if "crfnet" in sys.modules else None
+    expected, installed = wheel.split("-")[1], imported or importlib.metadata.version("crfnet")
     if "+" not in expected or installed == expected:
         return ""
     return f"the add-on needs its estimator {expected}, but Blender has loaded {installed}: restart Blender"

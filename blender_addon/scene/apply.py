@@ -13,8 +13,9 @@ from ..work.writers import Baked, Exported
 from . import stored_estimate
 from .code_values import code_values
 from .nodes import compositor, look_group, plate_group
+from .nodes.building import IS_BLENDER_5
 from .nodes.links import LOOK, PLATE
-from .plates import BAKED_FROM, CODE_VALUES_OF, Datablock, alpha_mode, datablock_of_plate, release_pasted
+from .plates import BAKED_FROM, CODE_VALUES_OF, SHADER, Datablock, alpha_mode, datablock_of_plate, release_pasted
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -27,7 +28,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     release_pasted(PLATE, LOOK, CODE_VALUES_OF)
     if completed.is_applied and completed.files is None:
         plate_group.check_config()
-        shown_tree(context)  # refuses one that is linked
+        shown_tree(context, datablock)  # refuses one that is linked
     stored_estimate.store(datablock, completed.estimate)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     stored_estimate.set_primaries(datablock, completed.primaries)
@@ -69,8 +70,9 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
 
 
 def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:
-    """Build the node group, and insert it after the plate in the compositor."""
-    group = plate_group.build_group(datablock, completed.job.plate.name, completed.estimate.curve, completed.stops)
+    """Build the node group, and insert it after the plate in the compositor, or in the shader that the editor shows."""
+    tree, name = shown_tree(context, datablock), completed.job.plate.name
+    group = plate_group.build_group(datablock, name, completed.estimate.curve, completed.stops, kind=tree.bl_idname)
     wanted = compositor.PlateNodes(
         plate=datablock,
         codes=code_values(datablock),
@@ -79,8 +81,11 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         is_composed=completed.job.output.is_composed and compositor.can_compose(context, datablock),
         timing=compositor.timing_of(context, datablock, completed.frames),
     )
-    compositor.apply_group(context.scene, shown_tree(context), wanted)
-    hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
+    compositor.apply_group(context.scene, tree, wanted)
+    if tree.bl_idname == SHADER:
+        return "its nodes linearize it in this shader; elsewhere it looks as before"
+    is_off = not IS_BLENDER_5 and not context.scene.use_nodes
+    hint = "; the compositor is switched off: tick Use Nodes" if is_off else ""
     if wanted.is_composed:
         return f"its nodes linearize it behind the render, whose film is transparent now{hint}"
     return f"its nodes linearize it in the compositor; elsewhere it looks as before{hint}"
@@ -139,12 +144,14 @@ def _path_like(plate: Datablock, path: str) -> str:
     return bpy.path.relpath(path) if plate.filepath.startswith("//") and bpy.data.filepath else path
 
 
-def shown_tree(context: bpy.types.Context) -> bpy.types.NodeTree:
+def shown_tree(context: bpy.types.Context, plate: Datablock | None = None) -> bpy.types.NodeTree:
     """Return the compositor tree that the node editor shows, or the scene's if no node editor is active.
 
-    Raise AddonError if it is linked from another file, and so cannot be changed for good.
+    If the editor shows a shader with the plate, return this. Raise AddonError if the tree is linked from another file,
+    and so cannot be changed for good.
     """
-    tree = compositor.tree_shown_in(context) or compositor.compositor_tree(context.scene)
+    tree = compositor.shader_shown_in(context, plate) if plate is not None else None
+    tree = tree or compositor.tree_shown_in(context) or compositor.compositor_tree(context.scene)
     if tree.library is not None or context.scene.library is not None:
-        raise AddonError(f"The compositor {tree.name} is linked from another file: make it local first")
+        raise AddonError(f"The node tree {tree.name} is linked from another file: make it local first")
     return tree

@@ -37,6 +37,8 @@ def code_values(plate: Datablock) -> Datablock:
             earlier.user_remap(copy)
             _collection(plate).remove(earlier)
         mark(copy, CODE_VALUES_OF, plate)
+    if isinstance(copy, bpy.types.Image):
+        copy.use_half_precision = False  # on the GPU, codes above 8 bits would lose up to 0.01 stop
     copy.name = _name_behind(plate)
     copy[_READ] = file_state(plate)
     return copy

@@ -9,8 +9,8 @@ import bpy
 from .color_management import data_space
 from .nodes.links import LOOK, PLATE
 from .nodes.look_group import srgb
-from .nodes.plate_group import linear_rec709, working_space
-from .plates import CODE_VALUES_OF
+from .nodes.plate_group import linear_rec709, set_working_space, working_space
+from .plates import CODE_VALUES_OF, SHADER
 
 
 def rename_color_spaces() -> None:
@@ -23,7 +23,9 @@ def rename_color_spaces() -> None:
             copy.colorspace_settings.name = data_space()
     linear, working = linear_rec709(), working_space()
     for group in bpy.data.node_groups:
-        if PLATE in group:
+        if PLATE in group and group.bl_idname == SHADER:
+            set_working_space(group)
+        elif PLATE in group:
             _convert(group, (linear, working))
         elif LOOK in group:
             _convert(group, (working, linear), (srgb(), working))

@@ -18,11 +18,14 @@ EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
 #: Suffixes of photographs that the estimator reads and Blender does not, or only some versions of it.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
 
+#: The node trees that show plates.
+COMPOSITOR, SHADER = NODE_TREES = ("CompositorNodeTree", "ShaderNodeTree")
+
 #: The panel's request in each editor while there is no plate.
 OPEN_A_PLATE = {
     "IMAGE_EDITOR": "Open a photograph, sequence or movie first",
     "CLIP_EDITOR": "Open a sequence or movie first",
-    "NODE_EDITOR": "Select an Image or Movie Clip node that has a plate",
+    "NODE_EDITOR": "Select a node that shows an image or movie clip",
 }
 
 #: The custom property of a copy whose pixels are code values, see `code_values`; its value is the plate.
@@ -34,6 +37,9 @@ COMPARED_PLATE = "camera_response_plate"
 #: The custom property of a linear plate that was baked; its value is the name of the plate.
 BAKED_FROM = "camera_response_baked_from"
 
+#: The nodes that show an image or clip, by their type: its attribute.
+SHOWN = {"IMAGE": "image", "MOVIECLIP": "clip", "TEX_IMAGE": "image", "TEX_ENVIRONMENT": "image"}
+
 #: The custom property with the first `short_hash` of a plate, on the plate and on the data that was made for it.
 _HASH = "camera_response_hash"
 
@@ -42,7 +48,7 @@ Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
-    """Return the image or clip that the editor shows; in the compositor, the active node's.
+    """Return the image or clip that the editor shows; of nodes, the active one's or else the only one.
 
     While an editor shows the linear plate for comparison, or a plate's code values, it is the plate. If a plate's node
     group is active, it is the plate that the group linearizes.
@@ -54,8 +60,8 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
         return compared_plate(space.image) or plate_itself(space.image)
     if space.type == "CLIP_EDITOR":
         return plate_itself(space.clip)
-    if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
-        return _plate_behind(space.edit_tree.nodes.active)
+    if space.type == "NODE_EDITOR" and space.tree_type in NODE_TREES and space.edit_tree:
+        return _plate_among(space.edit_tree.nodes)
     return None
 
 
@@ -65,7 +71,7 @@ def compared_plate(image: bpy.types.Image | None) -> bpy.types.Image | None:
 
 
 def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the plate of a compositor's Image or Movie Clip node, which may show its code values; else None."""
+    """Return the plate of a node that shows an image or clip, which may be its code values; else None."""
     return plate_itself(shown_by_node(node))
 
 
@@ -75,30 +81,23 @@ def plate_itself(datablock: Datablock | None) -> Datablock | None:
 
 
 def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the image or clip that an Image or Movie Clip node shows itself; None for any other node."""
-    attribute = {"IMAGE": "image", "MOVIECLIP": "clip"}.get(getattr(node, "type", ""))
+    """Return the image or clip that a compositor's or shader's node shows itself; None for any other node."""
+    attribute = SHOWN.get(getattr(node, "type", ""))
     return None if attribute is None else getattr(node, attribute, None)
 
 
-def _plate_behind(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the image or clip of a node; for a plate's node group, of the node at its Image input."""
-    datablock, seen = datablock_of_node(node), {node}
-    if datablock is not None or not _is_response_group(node):
-        return datablock
-    while datablock is None and node is not None:
+def _plate_among(nodes: bpy.types.Nodes) -> Datablock | None:
+    """Return the plate of the active node, for a plate's node group of the node at its first input; or the only one."""
+    node, seen = nodes.active, set()
+    properties = (getattr(node, "node_tree", None) or {}).keys()
+    if not any(name.startswith("camera_response") for name in properties):
+        all_plates = {datablock_of_node(each) for each in nodes} - {None}
+        return datablock_of_node(node) or (all_plates.pop() if len(all_plates) == 1 else None)
+    while node not in (None, *seen) and datablock_of_node(node) is None:
+        seen.add(node)
         source = node.inputs.get("Image") or next(iter(node.inputs), None)
         node = source.links[0].from_node if source is not None and source.links else None
-        if node in seen:
-            return None
-        seen.add(node)
-        datablock = datablock_of_node(node)
-    return datablock
-
-
-def _is_response_group(node: bpy.types.Node | None) -> bool:
-    """Return whether a node is a plate's node group, which a custom property marks."""
-    tree = getattr(node, "node_tree", None)
-    return tree is not None and any(name.startswith("camera_response") for name in tree.keys())  # noqa: SIM118
+    return datablock_of_node(node)
 
 
 def chosen_datablock(context: bpy.types.Context, image: str = "", clip: str = "") -> Datablock:

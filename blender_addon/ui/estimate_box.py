@@ -65,6 +65,9 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     row.label(text=word, icon=icon)
     for text in (*advice, meaning, stored_estimate.origin(datablock)):
         draw_text(column, text, letters)
+    if ffmpeg_filter := re.search(r"scale=[\w:=]+", " ".join(advice)):
+        button = column.operator("wm.context_set_string", text="Copy the Filter", icon="COPYDOWN")
+        button.data_path, button.value = "window_manager.clipboard", ffmpeg_filter[0]
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops) and not is_doubted:
         column.label(text=f"Expected error {stops:.2f} stop")

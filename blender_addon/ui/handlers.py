@@ -27,6 +27,13 @@ def end_comparisons(*_arguments: Any) -> None:
 
 
 @bpy.app.handlers.persistent
+def follow_frames(*_arguments: Any) -> None:
+    """Show the linear plate of the present frame, where that of a sequence or movie is shown."""
+    if comparison.is_frame_shown():
+        comparison.renew_soon()
+
+
+@bpy.app.handlers.persistent
 def rename_color_spaces(*_arguments: Any) -> None:
     """Name the color spaces of a file, which may have been made under another config, as the present one does."""
     if links.has_groups():
@@ -56,6 +63,7 @@ _HANDLERS: dict[str, Callable[..., None]] = {
     "load_post": check_opened_file,
     "blend_import_post": rename_color_spaces,
     "save_pre": prepare_saving,
+    "frame_change_post": follow_frames,
     **dict.fromkeys(("undo_pre", "undo_post", "redo_pre", "redo_post"), end_comparisons),
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor, and the entries of their menus."""
+"""The sidebar panel of the Image, Movie Clip, Compositor and Shader Editor, and the entries of their menus."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..scene.nodes import compositor, links
 from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
-from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
+from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence, CRF_OT_show_plate
 from .more.add_look import CRF_OT_add_look
 from .more.load_lut import CRF_OT_load_lut
 from .more.other_plates import CRF_OT_copy_response
@@ -36,8 +36,8 @@ class ResponsePanel:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the editor can show a plate: the node editor can only as the compositor."""
-        return getattr(context.space_data, "tree_type", "CompositorNodeTree") == "CompositorNodeTree"
+        """Return whether the editor can show a plate: of the node editors, the compositor's and the shaders' can."""
+        return getattr(context.space_data, "tree_type", plates.SHADER) in plates.NODE_TREES
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
@@ -48,6 +48,8 @@ class ResponsePanel:
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
             if plates.is_tiled(datablock):
                 layout.operator(CRF_OT_read_as_sequence.bl_idname, icon="SEQUENCE")
+            elif CRF_OT_show_plate.poll(context):
+                layout.operator(CRF_OT_show_plate.bl_idname, icon="LOOP_BACK")
         else:
             layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
@@ -55,9 +57,10 @@ class ResponsePanel:
         is_stored = stored_estimate.is_stored(datablock)
         if is_stored:
             draw_estimate(layout, context, datablock)
-            _draw_apply(layout, context, datablock)
-            draw_notices(layout, context, datablock)
-            _draw_warnings(layout, context, datablock)
+            with links.trees_at_rest():
+                _draw_apply(layout, context, datablock)
+                draw_notices(layout, context, datablock)
+                _draw_warnings(layout, context, datablock)
             draw_details(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
             _draw_more(layout, is_stored=is_stored)
@@ -77,7 +80,7 @@ class CRF_PT_clip(ResponsePanel, bpy.types.Panel):
 
 
 class CRF_PT_node(ResponsePanel, bpy.types.Panel):
-    """The panel in the compositor."""
+    """The panel in the Compositor and the Shader Editor."""
 
     bl_space_type = "NODE_EDITOR"
 
@@ -106,6 +109,7 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
         code_values.outdated(datablock, state),
         links.linearized_twice(datablock),
         links.without_group(datablock),
+        links.in_earlier_space(datablock),
     )
     draw_paragraphs(layout, [each for each in warnings if each], letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):
@@ -128,9 +132,24 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
         state, state_icon = "Changed settings count once they are applied.", "INFO"
     layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
     draw_text(layout, state, letters, icon=state_icon)
+    if has_been and settings.apply == "NODES":
+        draw_text(layout, _place(context, datablock), letters, icon="BLANK1")
     _draw_settings(layout, context, datablock)
     if has_been and settings.apply != "EXPORT":
         draw_view(layout, context, has_nodes=settings.apply == "NODES")
+
+
+def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:
+    """Return where the nodes of an applied plate in the compositor show it, or how they come to; empty in a shader."""
+    groups = [node for node in links.groups_of(datablock, context.scene) if node.bl_idname == "CompositorNodeGroup"]
+    behind = [node for group in groups for node in links.nodes_behind(group)]
+    if compositor.is_switched_off(context.scene):
+        return "The compositor is switched off: tick Use Nodes."
+    if any(compositor.is_output(node, context.scene) for node in behind):
+        return "It is in the compositor: F12 renders it."
+    if any(node.type == "VIEWER" for node in behind):
+        return "A Viewer in the compositor shows it; the render does not. Link it to what goes to the output."
+    return "Its node group in the compositor leads nowhere: link it on." if groups else ""
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:

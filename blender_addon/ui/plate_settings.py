@@ -130,8 +130,7 @@ class PlateChoices:
         name="Taken With", description="What took the plate, where you know it and its file does not say", items=DEVICES
     )
     ignore_metadata: bpy.props.BoolProperty(
-        name="Ignore Metadata",
-        description="Do not use the camera and the editing programs that the file names",
+        name="Ignore Metadata", description="Do not use the camera and the editing programs that the file names"
     )
 
 
@@ -177,7 +176,7 @@ def is_applied(datablock: bpy.types.ID) -> bool:
     """Return whether the estimate of a plate is applied with its present settings; in this scene, if as nodes."""
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock, bpy.context.scene)
+    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock, bpy.context)
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:

@@ -4,9 +4,8 @@
 `check_targets` checks before the estimate that they can be written.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import OpenImageIO as oiio
@@ -21,7 +20,7 @@ from crfnet.output_files import OutputFiles, check_folder, plain_stem
 from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
-from crfnet.plates.linear import linear_targets, linearize_plates
+from crfnet.plates.linear import linear_targets
 from crfnet.plates.primaries import PlatePrimaries, linear_space
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.types import Progress
@@ -63,20 +62,19 @@ def write(
 ) -> Written:
     """Write the files of a job in the mode BAKE or EXPORT, with the inverse response and an exposure in stops.
 
-    `sequence` returns the frames of the plate; `primaries` are for its color space, while a bake goes by the tags of
-    each frame. Raise CRFNetError or AddonError if there is no folder, a file exists and may not be replaced, or a file
-    cannot be written; new files are removed again, also if `progress` raises.
+    `primaries` are for the color space of an export, while a bake goes by the tags of each frame. Raise CRFNetError or
+    AddonError if there is no folder, a file exists and may not be replaced, or a file cannot be written; new files are
+    removed again, also if `progress` raises.
     """
     if job.output.mode is ApplyMode.BAKE:
-        return bake(job, lut, stops, sequence(), progress)
-    return export(job, lut, stops, primaries)
+        return _bake(job, lut, stops, sequence(), progress)
+    return _export(job, lut, stops, primaries)
 
 
 def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
-    """Check that the files of a job can be written; create nothing. `sequence` is called only for a bake.
+    """Raise AddonError or CRFNetError if the files of a job cannot be written; create nothing.
 
-    Raise AddonError if the job has no folder, or a file exists and may not be replaced; CRFNetError if the folder
-    cannot be written to.
+    `sequence` is called only for a bake.
     """
     if job.output.mode in WITHOUT_FILES:
         return
@@ -86,7 +84,12 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
         )
     folder = _folder(job)
     check_folder(folder)
-    existing = [path for path in _targets(job, folder, sequence) if path.exists()]
+    if job.output.mode is ApplyMode.BAKE:
+        targets = linear_targets(folder / baked_name(job.plate), sequence())
+    else:
+        files = output_files(job.plate, folder)
+        targets = (*files.luts, files.config)
+    existing = [path for path in targets if path.exists()]
     if existing and not job.output.overwrite:
         more = f" (and {len(existing) - 1} more)" if existing[1:] else ""
         raise AddonError(
@@ -94,16 +97,8 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
         )
 
 
-def _targets(job: Job, folder: Path, sequence: Callable[[], FrameSequence]) -> tuple[Path, ...]:
-    """Return the files that a bake or an export writes."""
-    if job.output.mode is ApplyMode.BAKE:
-        return linear_targets(folder / baked_name(job.plate), sequence())
-    files = output_files(job.plate, folder)
-    return (*files.luts, files.config)
-
-
-def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
-    """Write the linear plate, or all its frames; a canceled or failed job leaves the folder as it was."""
+def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Baked:
+    """Write the linear plate, or all its frames."""
     folder = _folder(job)
     oiio.attribute("debug", 0)  # else the builds of some distributions print what OpenEXR does not store, for each file
     targets = linear_targets(folder / baked_name(job.plate), sequence)
@@ -113,27 +108,13 @@ def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: 
     plan = OutputPlan(replace(output_files(job.plate, folder), luts=(), linear=targets), options)
     primaries = PlatePrimaries(REC709, "as the plate is tagged")
     light = PlateLight(lut, stops, primaries, linear_space(primaries))
+    frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=job.plate.alpha_mode)
     with frame_reader(job.plate) as read:
-        linearize = partial(_linearize, job.plate.alpha_mode)
-        deliver(plan, light, [read(sequence)], linearize=linearize, progress=progress)
+        deliver(plan, light, [read(frames)], progress=progress)
     return Baked(targets, job.plate.is_sequence)
 
 
-def _linearize(
-    alpha_mode: str,
-    sequence: FrameSequence,
-    targets: Sequence[Path],
-    lut: Lut1D,
-    options: PlateOptions,
-    *,
-    progress: Progress | None = None,
-) -> None:
-    """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
-    frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
-    linearize_plates(frames, targets, lut, options, progress=progress)
-
-
-def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
+def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
     """Write the LUT in three formats, and the config that Blender runs on with the plate's color space added."""
     folder = _folder(job)
     files = output_files(job.plate, folder)

@@ -30,9 +30,6 @@ from ..report.documents import estimate_document
 from .estimates import FileEstimate, response_lut
 from .plan import OutputPlan
 
-#: Writes linear frames: the arguments of `linearize_plates`.
-Linearize = Callable[..., object]
-
 
 def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLight) -> dict[str, Any]:
     """Write every file of a plan, with the sheet and the JSON document; return the document.
@@ -59,7 +56,6 @@ def deliver(
     sources: Sequence[FrameSource] = (),
     *,
     more: Mapping[Path, Callable[[Path], None]] | None = None,
-    linearize: Linearize = linearize_plates,
     progress: Progress | None = None,
 ) -> tuple[Path, ...]:
     """Write the LUTs, the config, the linear plates and `more` files of a plan, by their writers; return the files.
@@ -75,7 +71,7 @@ def deliver(
     with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
         frames = [folder / path.name for path in plan.files.linear]
-        linear = pool.submit(_write_linear, frames, sources, light, plan.plates, linearize, progress)
+        linear = pool.submit(_write_linear, frames, sources, light, plan.plates, progress)
         space = plan.space and with_light(plan.space, light.stops, light.plate, light.space)
         write_luts(folder, plan.files, light.lut, space)
         for path, write in more.items():
@@ -102,17 +98,16 @@ def _write_linear(
     sources: Sequence[FrameSource],
     light: PlateLight,
     plates: PlateOptions,
-    linearize: Linearize,
     progress: Progress | None,
 ) -> None:
     """Write the linear plates: one sequence together, else each by itself."""
     if not targets:
         return
     if len(sources) == 1:
-        linearize(sources[0], targets, light.lut, plates, progress=progress)
+        linearize_plates(sources[0], targets, light.lut, plates, progress=progress)
         return
     for source, target in zip(sources, targets, strict=True):
-        linearize(source, (target,), light.lut, plates)
+        linearize_plates(source, (target,), light.lut, plates)
 
 
 def _write_sheet(path: Path, estimated: FileEstimate) -> None:

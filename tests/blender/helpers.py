@@ -11,6 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 from blender_addon.scene import plates as plates  # noqa: E402 - after the skip
 from blender_addon.scene import stored_estimate as stored_estimate  # noqa: E402
+from blender_addon.scene.nodes import compositor as compositor  # noqa: E402
 from blender_addon.scene.nodes.compositor import compositor_tree as compositor_tree  # noqa: E402
 from blender_addon.ui.image_editor import comparison as comparison  # noqa: E402
 
@@ -169,12 +170,17 @@ class Panel:
 
 def drawn_in(image, in_editor):
     """What the panel of an Image Editor draws for an image."""
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        return drawn_here()
+
+
+def drawn_here():
+    """What the panel of the active editor draws."""
     from blender_addon.ui.panel import ResponsePanel
 
     panel = Panel()
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        ResponsePanel.draw(panel, bpy.context)
+    ResponsePanel.draw(panel, bpy.context)
     return panel.layout.drawn
 
 

@@ -63,17 +63,12 @@ class TestAnotherFile:
         image.filepath = str(copy)
         assert lines_of(image) == []
 
-    def test_a_new_file_is_told_until_it_is_estimated(self, image, lines_of, tmp_path, codes):
-        image.filepath = str(other_file(tmp_path, codes))
-        assert lines_of(image) == [CHANGED]
-        apply(image, "EXPORT")  # the estimate is still the earlier file's
-        assert lines_of(image) == [CHANGED]
-        estimate(image)
-        assert lines_of(image) == []
-
-    def test_nodes_show_the_earlier_file_until_they_are_applied(self, image, lines_of, tmp_path, codes, composited):
+    def test_a_new_file_is_told_until_it_is_estimated_and_its_nodes_until_they_are_applied(
+        self, image, lines_of, tmp_path, codes, composited
+    ):
         apply(image)
         image.filepath = str(other_file(tmp_path, codes))
+        apply(image, "EXPORT")  # the estimate is still the earlier file's
         assert lines_of(image) == [CHANGED, EARLIER]
         estimate(image)
         assert lines_of(image) == [EARLIER]
@@ -214,15 +209,6 @@ class TestTwice:
         (link,) = by_hand.outputs["Image"].links
         expected = curve_of(image).inverse(codes / 255)
         assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-5
-
-    def test_two_groups_in_a_row_are_told(self, image, lines_of, tree):
-        apply(image)
-        assert lines_of(image) == []
-        first = group_node()
-        second = tree.nodes.new("CompositorNodeGroup")
-        second.node_tree = first.node_tree
-        tree.links.new(first.outputs[0], second.inputs["Image"])
-        assert lines_of(image) == [TWICE]
 
     def test_the_look_behind_the_group_is_no_second_one(self, image, lines_of, tree):
         apply(image)

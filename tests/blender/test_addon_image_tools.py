@@ -1,5 +1,7 @@
 """Before and after in the Image Editor, and the eyedropper for gray: what is seen, and what never changes."""
 
+import importlib
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,10 +9,13 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import bpy, comparison, curve_of, load_sequence, pixels_of, plates, show
+from .helpers import bpy, comparison, curve_of, drawn_here, load, load_sequence, operators, pixels_of, plates, show
 from .helpers import estimate as run
 
 pytestmark = pytest.mark.usefixtures("estimated")
+
+#: Blender's keymaps that count in an Image Editor.
+KEYMAPS = ("Window", "Screen", "Frames", "View2D", "Image", "Image Generic", "Image Paint", "UV Editor", "Mask Editing")
 
 
 def names():
@@ -37,9 +42,50 @@ def test_the_linear_plate_is_shown_and_kept_for_the_next_time(image, plate_file,
         show(after=False)
         assert space.image == image
         linear.pixels[0] = 0.25  # not computed anew
-        show(after=True)
+        bpy.ops.crf.compare()  # as the key does
         assert space.image == linear
+        assert linear.name == ".Linear view of plate.png"
         assert linear.pixels[0] == 0.25
+        bpy.ops.crf.compare()
+        assert space.image == image
+
+
+def test_the_key_of_the_switch_is_free_in_blenders_keymap_and_absent_without_a_window(addon, monkeypatch):
+    import addon_utils
+
+    from blender_addon.ui.image_editor import image_tools
+
+    monkeypatch.syspath_prepend(Path(bpy.utils.system_resource("SCRIPTS"), "presets", "keyconfig"))
+    generated = importlib.import_module("keymap_data.blender_default").generate_keymaps()
+    used = [event for name, _, content in generated if name in KEYMAPS for _, event, _ in content["items"]]
+    assert len(used) > 100
+    assert not [event for event in used if event["type"] == "Z" and event.keys() & {"shift", "any"} and len(event) == 3]
+    keymaps = bpy.context.window_manager.keyconfigs.addon.keymaps
+    assert "Image" not in keymaps  # in the background
+    image_tools.add_key()
+    (item,) = keymaps["Image"].keymap_items
+    assert (item.idname, item.type, item.shift, item.properties.is_property_set("is_after")) == (
+        "crf.compare",
+        "Z",
+        True,
+        False,
+    )
+    addon_utils.disable("blender_addon")
+    assert not keymaps["Image"].keymap_items
+
+
+@pytest.mark.parametrize(("kind", "editor"), [("image", "IMAGE_EDITOR"), ("clip", "CLIP_EDITOR")])
+def test_a_baked_plate_leads_back_to_its_plate(addon, plate_file, in_editor, kind, editor):
+    plate = load(plate_file, kind)
+    with in_editor(editor) as space:
+        setattr(space, kind, plate)
+        assert not bpy.ops.crf.show_plate.poll()
+        run(plate, "BAKE")
+        assert getattr(space, kind) != plate
+        assert ("crf.show_plate", "LOOP_BACK") in operators(drawn_here())
+        assert bpy.ops.crf.show_plate() == {"FINISHED"}
+        assert getattr(space, kind) == plate
+        assert "crf.show_plate" not in str(drawn_here())
 
 
 def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):
@@ -57,6 +103,12 @@ def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_p
             expected = curve.inverse(np.roll(codes, number, axis=0) / 255)
             assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
             show(after=False)
+        show(after=True)
+        bpy.context.scene.frame_set(4)  # while the linear plate is shown
+        assert bpy.app.timers.is_registered(comparison.renew)
+        comparison.renew()
+        assert np.abs(pixels_of(space.image)[..., :3] - curve.inverse(np.roll(codes, 4, axis=0) / 255)).max() < 1e-6
+        show(after=False)
         bpy.context.scene.frame_set(3)
         with pytest.raises(RuntimeError, match=r"shot\.0003\.png"):
             show(after=True)

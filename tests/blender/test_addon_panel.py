@@ -2,7 +2,7 @@
 
 import pytest
 
-from .helpers import Layout, Panel, apply, bpy, drawn_in, estimate, labels, operators
+from .helpers import Layout, apply, bpy, drawn_here, drawn_in, estimate, labels, operators
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -101,13 +101,12 @@ def test_it_names_a_missing_library_or_says_what_to_do_without_a_plate(addon, in
     from blender_addon.ui.panel import ResponsePanel
 
     monkeypatch.setattr(lazy_import, "missing", lambda: missing)
-    panel = Panel()
     with in_editor(editor):
         assert ResponsePanel.poll(bpy.context)
-        ResponsePanel.draw(panel, bpy.context)
+        drawn = drawn_here()
         assert not bpy.ops.crf.estimate_response.poll()
-    assert " ".join(labels(panel.layout.drawn)) == (missing or OPEN_A_PLATE[editor])
-    assert operators(panel.layout.drawn) == []
+    assert " ".join(labels(drawn)) == (missing or OPEN_A_PLATE[editor])
+    assert operators(drawn) == []
 
 
 def test_the_way_that_was_chosen_last_holds_for_other_plates(addon, image, tmp_path):
@@ -135,6 +134,13 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["device"].enum_items.keys() == ["file", *defaults.DEVICES]
     assert -settings["exposure"].hard_min == settings["exposure"].hard_max == defaults.MAX_EXPOSURE
     assert defaults.CONFIG_NAME == CONFIG_NAME
+
+
+def test_the_filter_of_an_advice_can_be_copied(image, in_editor):
+    image["camera_response"]["advice"] = "Expand it with its filter scale=in_range=limited:out_range=full."
+    drawn = drawn_in(image, in_editor)
+    assert ("wm.context_set_string", "Copy the Filter") in operators(drawn)
+    assert ("set", "value", "scale=in_range=limited:out_range=full") in drawn
 
 
 def test_a_long_option_is_broken_behind_a_colon(addon):

@@ -1,11 +1,26 @@
 """The ready comp: the render over the linear plate, at the output and in a viewer, after two clicks."""
 
+import shutil
+
 import numpy as np
 import pytest
 
 from tests.blender.conftest import rendered
 
-from .helpers import apply, bpy, curve_of, drawn_in, group_node, groups, labels, operators, output, scene_tree
+from .helpers import (
+    IS_BLENDER_5,
+    apply,
+    bpy,
+    curve_of,
+    drawn_in,
+    group_node,
+    groups,
+    labels,
+    load,
+    operators,
+    output,
+    scene_tree,
+)
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -64,6 +79,28 @@ def test_a_plate_of_another_shape_fills_the_frame(image, tmp_path):
     assert pixels.min() < 0.1  # it is not hidden where there is no render
 
 
+def place_of(image, in_editor):
+    """The panel's words on where the applied plate is seen."""
+    words = " ".join(labels(drawn_in(image, in_editor)))
+    return words.partition("Applied with these settings. ")[2].partition("AgX")[0].strip()
+
+
+def test_the_panel_says_where_an_applied_plate_is_seen(image, tree, plate_file, tmp_path, in_editor):
+    assert place_of(image, in_editor) == ""
+    apply(image)
+    assert place_of(image, in_editor) == "It is in the compositor: F12 renders it."
+    other = load(shutil.copy(plate_file, tmp_path / "other.png"))
+    bpy.ops.crf.estimate_response(image=other.name, apply="NODES")  # the comp has its plate
+    assert place_of(other, in_editor).startswith("A Viewer in the compositor shows it; the render does not.")
+    tree.links.remove(
+        next(node for node in groups(tree) if node.node_tree["camera_response_of"] == other).outputs[0].links[0]
+    )
+    assert place_of(other, in_editor) == "Its node group in the compositor leads nowhere: link it on."
+    if not IS_BLENDER_5:
+        bpy.context.scene.use_nodes = False
+        assert place_of(image, in_editor) == "The compositor is switched off: tick Use Nodes."
+
+
 @pytest.mark.parametrize("choices", [{}, {"compose": True}])
 def test_nodes_of_the_artist_are_left_alone_or_on_demand_stay_in_front(image, tree, choices):
     blur = blur_the_render()
@@ -98,6 +135,7 @@ def test_a_view_that_darkens_highlights_is_named_and_one_click_sets_standard(ima
     drawn = drawn_in(image, in_editor)
     assert "AgX darkens the highlights of the plate." in " ".join(labels(drawn))
     assert buttons <= set(operators(drawn))
+    assert drawn[drawn.index(("label", "AgX darkens the", "INFO")) - 3][0] == "box"  # apart from offers of cameras
     assert bpy.ops.crf.standard_view() == {"FINISHED"}
     assert (view.view_transform, view.look, view.exposure, view.gamma) == ("Standard", "None", 0, 1)
     assert not buttons & set(operators(drawn_in(image, in_editor)))

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from .helpers import Panel, bpy, operators
+from .helpers import bpy, drawn_in, operators
 
 
 class Waiting:
@@ -94,15 +94,10 @@ def test_one_run_at_a_time(waiting, image):
 
 
 def test_the_panel_shows_the_progress_and_cancels(waiting, in_editor, image):
-    from blender_addon.ui.panel import ResponsePanel
-
-    panel = Panel()
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        ResponsePanel.draw(panel, bpy.context)
-    assert ("progress", 0.0, "Estimating plate ...") in panel.layout.drawn
-    drawn = [name for name, _ in operators(panel.layout.drawn)]
-    assert "crf.cancel_run" in drawn
-    assert ("set", "enabled", False) in panel.layout.drawn  # the settings, which no longer count for this run
-    assert ("set", "enabled", True) not in panel.layout.drawn
-    assert "crf.estimate_response" not in drawn
+    drawn = drawn_in(image, in_editor)
+    assert ("progress", 0.0, "Estimating plate ...") in drawn
+    names = [name for name, _ in operators(drawn)]
+    assert "crf.cancel_run" in names
+    assert ("set", "enabled", False) in drawn  # the settings, which no longer count for this run
+    assert ("set", "enabled", True) not in drawn
+    assert "crf.estimate_response" not in names

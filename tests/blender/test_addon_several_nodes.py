@@ -2,7 +2,7 @@
 
 import pytest
 
-from .helpers import apply, bpy, compositor_tree, drawn_in, groups, labels
+from .helpers import apply, bpy, compositor_tree, drawn_in, groups, labels, plates
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -30,6 +30,17 @@ def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
     assert twice(image) == ""
     tree.links.new(first.outputs[0], second.inputs["Image"])
     assert "two node groups follow" in twice(image)
+
+
+def test_a_panel_reads_each_node_once_and_the_next_one_reads_it_again(image, tree, in_editor, monkeypatch):
+    from blender_addon.scene.nodes import links
+
+    apply(image)
+    blur, read = tree.nodes.new("CompositorNodeBlur"), []
+    monkeypatch.setattr(links, "shown_by_node", lambda node: read.append(node) or plates.shown_by_node(node))
+    for draws in (1, 2):
+        words_on(image, in_editor)
+        assert read.count(blur) == draws
 
 
 def exposures(scene):

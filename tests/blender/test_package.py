@@ -246,14 +246,31 @@ def test_the_exported_lut_is_the_inverse_response(found, user, plate, tolerance)
     np.testing.assert_allclose(read_lut(path).apply(brightness), here.curve.inverse(brightness), atol=tolerance.parity)
 
 
-def test_an_estimator_of_another_build_asks_for_a_restart(monkeypatch, tmp_path):
-    """Between the update of the add-on and the next start of Blender."""
+def test_two_enabled_copies_of_the_addon_are_named(addon):
+    import bpy
+
     from blender_addon import lazy_import
 
+    second = bpy.context.preferences.addons.new()
+    second.module = "bl_ext.studio.blender_addon"
+    line = lazy_import.missing()
+    bpy.context.preferences.addons.remove(second)
+    assert line.endswith("remove blender_addon or bl_ext.studio.blender_addon")
+    assert not lazy_import.missing()
+
+
+@pytest.mark.parametrize("is_imported", [False, True])
+def test_an_estimator_of_another_build_asks_for_a_restart(monkeypatch, tmp_path, is_imported):
+    """Between the update of the add-on and the next start of Blender, which may have replaced the files already."""
+    from blender_addon import lazy_import
+
+    if is_imported:
+        lazy_import.load("crfnet")
+        monkeypatch.setattr(importlib.metadata, "version", lambda _: "0.1.0+00000000")
     (tmp_path / "blender_manifest.toml").write_text('wheels = ["./wheels/crfnet-0.1.0+00000000-py3-none-any.whl"]\n')
     monkeypatch.setattr(lazy_import, "__file__", str(tmp_path / "lazy_import.py"))
-    lazy_import.missing.cache_clear()
+    lazy_import._missing_library.cache_clear()
     line = lazy_import.missing()
-    lazy_import.missing.cache_clear()
+    lazy_import._missing_library.cache_clear()
     assert "0.1.0+00000000" in line
     assert line.endswith("restart Blender")

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes from which the compositor node groups are built, placed in columns and rows."""
+"""Nodes from which the node groups for compositors and shaders are built, placed in columns and rows."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import bpy
+
+from ..plates import SHADER
 
 if TYPE_CHECKING:
     from crfnet_core.types import Float64Array
@@ -24,6 +27,9 @@ _COLUMN, _ROW = 190, -230
 
 Socket: TypeAlias = bpy.types.NodeSocket
 
+#: An operand of a node that computes: a socket, or a number or vector.
+Operand: TypeAlias = Socket | float | Sequence[float]
+
 
 def activate(node: bpy.types.Node) -> None:
     """Select a node, and no other one of its tree."""
@@ -36,7 +42,8 @@ class NodeGrid:
     """A node tree whose nodes are placed in columns and rows."""
 
     def __init__(self, tree: bpy.types.NodeTree) -> None:
-        self._tree = tree
+        self._tree, self._is_shader = tree, tree.bl_idname == SHADER
+        self._common = "Shader" if self._is_shader or IS_BLENDER_5 else "Compositor"  # of nodes that both kinds have
 
     def node(self, kind: str, column: float, *, row: float = 0) -> bpy.types.Node:
         """Return a new node."""
@@ -48,19 +55,35 @@ class NodeGrid:
         """Link an output to an input."""
         self._tree.links.new(source, target)
 
-    def math(self, operation: str, column: float, row: float, value: Socket, *numbers: float) -> Socket:
-        """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-        node = self.node("ShaderNodeMath" if IS_BLENDER_5 else "CompositorNodeMath", column, row=row)
+    def math(self, operation: str, column: float, row: float, *operands: Operand, kind: str = "Math") -> Socket:
+        """Return the socket of a value that a Math node has computed; in shaders also of another kind, "VectorMath"."""
+        node = self.node(f"{self._common}Node{kind}", column, row=row)
         node.operation = operation
-        self.link(value, node.inputs[0])
-        for index, number in enumerate(numbers, 1):
-            node.inputs[index].default_value = number
-        return node.outputs[0]
+        for operand, socket in zip(operands, (each for each in node.inputs if each.enabled), strict=False):
+            if isinstance(operand, Socket):
+                self.link(operand, socket)
+            else:
+                socket.default_value = operand
+        return next(socket for socket in node.outputs if socket.enabled)
+
+    def curve(self, colors: Socket, start: float, end: float, column: float, row: float) -> bpy.types.Node:
+        """Return an RGB Curves node for the colors from start to end, which the range of its curves, 0 to 1, covers."""
+        if self._is_shader:
+            node, scale = self.node("ShaderNodeRGBCurve", column, row=row), 1 / (end - start)
+            factors, summands = [scale] * 3, [-start * scale] * 3
+            scaled = self.math("MULTIPLY_ADD", column - 1, row, colors, factors, summands, kind="VectorMath")
+            self.link(scaled, node.inputs["Color"])
+            return node
+        node = self.node("CompositorNodeCurveRGB", column, row=row)
+        self.link(colors, node.inputs["Image"])
+        for name, level in (("Black Level", start), ("White Level", end)):
+            node.inputs[name].default_value = (level, level, level, 1)
+        return node
 
     def add(self, first: Socket, second: Socket, column: float, row: float) -> Socket:
         """Return the socket of the sum of two colors, with the alpha of the first."""
-        node = self.node("ShaderNodeMix" if IS_BLENDER_5 else "CompositorNodeMixRGB", column, row=row)
-        if IS_BLENDER_5:
+        node = self.node("ShaderNodeMix" if self._common == "Shader" else "CompositorNodeMixRGB", column, row=row)
+        if self._common == "Shader":
             node.data_type = "RGBA"
         node.blend_type, node.inputs[0].default_value = "ADD", 1
         summands = [socket for socket in node.inputs if socket.type == "RGBA"]
@@ -79,6 +102,14 @@ class NodeGrid:
                 total = added
             products.append(total)
         return products
+
+    def transformed(self, colors: Socket, matrix: Float64Array, column: float) -> Socket:
+        """Return the socket of a shader's colors that are multiplied by a matrix, shape (3, 3)."""
+        joined = self.node("ShaderNodeCombineXYZ", column + 1)
+        for row, factors in enumerate(matrix.tolist()):
+            product = self.math("DOT_PRODUCT", column, row, colors, factors, kind="VectorMath")
+            self.link(product, joined.inputs[row])
+        return joined.outputs[0]
 
     def convert_color_space(self, source: str, target: str, colors: Socket, column: float) -> Socket:
         """Return the socket of colors that are converted from one color space to another."""

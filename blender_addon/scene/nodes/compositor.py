@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Find a plate in the compositor, and put its node group behind it."""
+"""Find a plate in a compositor or shader, and put its node group behind it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import TypeAlias
 
 import bpy
 
-from ..plates import Datablock, datablock_of_node
+from ..plates import COMPOSITOR, SHADER, SHOWN, Datablock
 from .building import GAP, IS_BLENDER_5, WIDTH, activate
 from .links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
 from .ready_comp import is_free, put_render_over_plate
 
-#: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
+#: Holds the timing of a sequence: the image user of an editor or texture, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
 
 #: Difference of two exposures, in stops, that single precision makes at most.
@@ -43,6 +43,11 @@ class FrameTiming:
     def shows_any(self, frames: Sequence[int]) -> bool:
         """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
         return any(self.offset < frame <= self.offset + self.duration for frame in frames)
+
+    def number_on(self, frame: int) -> int:
+        """Return the number of the file that is shown on a frame of the scene, as Blender does; one less before all."""
+        step = frame - self.start
+        return self.offset + 1 + (step % self.duration if self.is_cyclic else max(-1, min(step, self.duration - 1)))
 
     def set_on(self, user: ImageUser) -> None:
         """Give it to an editor or a node."""
@@ -94,17 +99,28 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
 def tree_shown_in(context: bpy.types.Context) -> bpy.types.NodeTree | None:
     """Return the compositor tree that the node editor shows, or else the scene's; None if the scene has none yet."""
     tree, scene = getattr(context.space_data, "edit_tree", None), context.scene
-    if tree is not None and tree.bl_idname == "CompositorNodeTree":
+    if tree is not None and tree.bl_idname == COMPOSITOR:
         return tree
     return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
 
 
+def shader_shown_in(context: bpy.types.Context, plate: Datablock) -> bpy.types.NodeTree | None:
+    """Return the shader tree that the node editor shows if a node of it shows a plate; else None."""
+    tree = getattr(context.space_data, "edit_tree", None)
+    return tree if tree is not None and tree.bl_idname == SHADER and _sources(tree, plate) else None
+
+
 def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
     """Return whether the render can be put over a plate: the shown tree has an output, and the plate leads nowhere."""
-    tree = tree_shown_in(context)
-    if tree is None:
-        return True
+    tree, shader = tree_shown_in(context), shader_shown_in(context, plate)
+    if tree is None or shader is not None:
+        return shader is None
     return output_of(tree) is not None and not any(n.outputs["Image"].is_linked for n in _sources(tree, plate))
+
+
+def is_output(node: bpy.types.Node, scene: bpy.types.Scene) -> bool:
+    """Return whether a node is the output of a scene's compositor."""
+    return node.type == "COMPOSITE" or (IS_BLENDER_5 and node == output_of(scene.compositing_node_group))
 
 
 def is_switched_off(scene: bpy.types.Scene) -> bool:
@@ -113,7 +129,7 @@ def is_switched_off(scene: bpy.types.Scene) -> bool:
 
 
 def apply_group(scene: bpy.types.Scene, tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
-    """Linearize a plate in a compositor tree: its nodes show its code values, and lead to its node group.
+    """Linearize a plate in a compositor or shader tree: its nodes show its code values, and lead to its node group.
 
     The links from the plate then start at the group. A group that follows already, whatever stands between, is only
     brought up to date, as all nodes of the group are but for those of other scenes: these keep their exposure. If no
@@ -124,11 +140,15 @@ def apply_group(scene: bpy.types.Scene, tree: bpy.types.NodeTree, wanted: PlateN
         sources = sources or [_add_plate(tree, wanted)]
         _link_on(tree, sources[0], wanted)
     for source in sources:
-        _show(source, wanted)
+        setattr(source, SHOWN[source.type], wanted.codes)  # its frame settings stay
+        source.label = source.label or f"{wanted.plate.name} code values"
         if not _groups_behind(source, wanted.plate):
             activate(_insert(tree, source, wanted.group))
+        _link_alpha(source, wanted.plate)
     for node in groups_of(wanted.plate, scene):
-        node.node_tree, node.mute = wanted.group, False
+        if node.node_tree.bl_idname == tree.bl_idname:
+            node.node_tree = wanted.group
+        node.mute = False
         node.inputs["Exposure"].default_value = wanted.exposure
 
 
@@ -138,10 +158,14 @@ def set_exposure(plate: Datablock, scene: bpy.types.Scene, exposure: float) -> N
         node.inputs["Exposure"].default_value = exposure
 
 
-def is_linearized(plate: Datablock, scene: bpy.types.Scene) -> bool:
-    """Return whether a node shows a plate or its code values, and leads to its node group; not in another scene."""
-    groups = groups_of(plate, scene)
-    return any(node in groups for source in nodes_of(plate) for node in _groups_behind(source, plate))
+def is_linearized(plate: Datablock, context: bpy.types.Context) -> bool:
+    """Return whether a node shows a plate or its code values, and leads to its node group; not in another scene.
+
+    If the editor shows a shader with the plate, only the nodes of this count.
+    """
+    groups, shader = groups_of(plate, context.scene), shader_shown_in(context, plate)
+    sources = nodes_of(plate) if shader is None else _sources(shader, plate)
+    return any(node in groups for source in sources for node in _groups_behind(source, plate))
 
 
 def has_exposure(plate: Datablock, scene: bpy.types.Scene, exposure: float) -> bool:
@@ -155,44 +179,37 @@ def _groups_behind(source: bpy.types.Node, plate: Datablock) -> list[bpy.types.N
     return [node for node in nodes_behind(source) if holds_group_of(node, plate)]
 
 
-def _show(node: bpy.types.Node, wanted: PlateNodes) -> None:
-    """Show the code values of a plate in a node; its frame settings stay."""
-    if node.type == "IMAGE":
-        node.image = wanted.codes
-    else:
-        node.clip = wanted.codes
-    node.label = node.label or f"{wanted.plate.name} code values"
-
-
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
     """Return a new node of the group between a plate's node and the nodes that it was linked to."""
-    node = tree.nodes.new("CompositorNodeGroup")
+    node = tree.nodes.new(tree.bl_idname.replace("NodeTree", "NodeGroup"))
     node.node_tree = group
     node.width = WIDTH
     node.location = (source.location.x + source.width + GAP, source.location.y)
     node.parent = source.parent
     _make_room(source, node)
-    for target in [link.to_socket for link in source.outputs["Image"].links]:
-        tree.links.new(node.outputs["Image"], target)
-    tree.links.new(source.outputs["Image"], node.inputs["Image"])
+    for target in [link.to_socket for link in source.outputs[0].links]:
+        tree.links.new(node.outputs[0], target)
+    tree.links.new(source.outputs[0], node.inputs[0])
     return node
+
+
+def _link_alpha(source: bpy.types.Node, plate: Datablock) -> None:
+    """Link the alpha of a texture to those of its groups that divide by it."""
+    for node in _groups_behind(source, plate):
+        if "Alpha" in node.inputs and "Alpha" in source.outputs and node.id_data == source.id_data:
+            source.id_data.links.new(source.outputs["Alpha"], node.inputs["Alpha"])
 
 
 def _make_room(source: bpy.types.Node, node: bpy.types.Node) -> None:
     """Move the nodes behind a plate's node to the right, so that a new node has room between them."""
     behind = [other for other in neighbors_behind(source) if other != node]
-    nearest = min((_left(other) for other in behind), default=None)
+    nearest = min((other.location_absolute.x for other in behind), default=None)
     if nearest is None:
         return
-    missing = _left(node) + node.width + GAP - nearest
+    missing = node.location_absolute.x + node.width + GAP - nearest
     if missing > 0:
         for other in behind:
             other.location.x += missing
-
-
-def _left(node: bpy.types.Node) -> float:
-    """Return the left edge of a node, whatever frame it is in."""
-    return node.location_absolute.x
 
 
 def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
@@ -226,7 +243,7 @@ def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNode
 
 def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show a plate or its code values."""
-    return [node for node in tree.nodes if datablock_of_node(node) == plate]
+    return [node for node in nodes_of(plate) if node.id_data == tree]
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:
@@ -235,4 +252,4 @@ def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[Image
     for space in (context.space_data, *(area.spaces.active for area in areas)):
         if space is not None and space.type == "IMAGE_EDITOR" and space.image == plate:
             yield space.image_user
-    yield from (node for node in nodes_of(plate) if node.type == "IMAGE")
+    yield from (getattr(node, "image_user", node) for node in nodes_of(plate))

@@ -46,10 +46,7 @@ def add_curves(
     """Return the socket of a function of colors that is 0 at 0, drawn in parts that follow each other from 0 on."""
     total = None
     for row, (start, end) in enumerate(parts):
-        node = grid.node("CompositorNodeCurveRGB", column, row=1.5 * row)
-        grid.link(colors, node.inputs["Image"])
-        for name, level in (("Black Level", start), ("White Level", end)):
-            node.inputs[name].default_value = (level, level, level, 1)
+        node = grid.curve(colors, start, end, column, 1.5 * row)
         values = function(np.linspace(start, end, STEPS + 1))
         _draw(node.mapping, values - values[0])
         drawn = node.outputs[0]

@@ -41,10 +41,9 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
     """
     group = _build(plate, name, curve)
     linearizing = (node for node in tree.nodes if holds_group_of(node, plate))
-    node = _node_before_output(tree)
+    node = _node_before_output(tree, group)
     node.node_tree = group
     node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in linearizing), exposure)
-    _link(tree, node)
     activate(node)
 
 
@@ -91,31 +90,24 @@ def srgb() -> str:
     raise ConfigError("this config has no sRGB space, which the look needs; use Blender's own config")
 
 
-def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
-    """Return the look that leads to the output of a tree, of whatever plate; else a new node."""
+def _node_before_output(tree: bpy.types.NodeTree, group: bpy.types.NodeTree) -> bpy.types.Node:
+    """Return the look, of whatever plate, that leads to the output of a tree; else a new node of a look.
+
+    A new one stands between the output, with its viewers, and the node that leads to it.
+    """
     output = output_of(tree)
-    link = output.inputs[0].links[0] if output is not None and output.inputs[0].links else None
-    earlier = link.from_node if link is not None else None
-    if LOOK in (getattr(earlier, "node_tree", None) or {}):
-        return earlier
+    source = output.inputs[0].links[0].from_socket if output is not None and output.inputs[0].links else None
+    if source is not None and LOOK in (getattr(source.node, "node_tree", None) or {}):
+        return source.node
     node = tree.nodes.new("CompositorNodeGroup")
-    node.width = WIDTH
-    if output is not None:
-        node.location = output.location
-        output.location.x += WIDTH + GAP
-    return node
-
-
-def _link(tree: bpy.types.NodeTree, node: bpy.types.Node) -> None:
-    """Put a look between the output of a tree, with its viewers, and what leads to it, unless it is there already."""
-    output = output_of(tree)
+    node.node_tree, node.width = group, WIDTH
     if output is None:
-        return
-    source = output.inputs[0].links[0].from_socket if output.inputs[0].links else None
-    if source is not None and source.node == node:
-        return
+        return node
+    node.location = output.location
+    output.location.x += WIDTH + GAP
     viewers = [] if source is None else [link.to_socket for link in source.links if link.to_node.type == "VIEWER"]
     for target in (output.inputs[0], *viewers):
         tree.links.new(node.outputs["Image"], target)
     if source is not None:
         tree.links.new(source, node.inputs["Image"])
+    return node

@@ -14,8 +14,7 @@ def is_plain(tree: bpy.types.NodeTree | None) -> bool:
     """Return whether there is no compositor tree yet, or it has an output and only hands the render through."""
     if tree is None:
         return True
-    linked = (node for node in tree.nodes if any(output.is_linked for output in node.outputs))
-    return output_of(tree) is not None and all(node.type in _PASSING for node in linked)
+    return output_of(tree) is not None and all(link.from_node.type in _PASSING for link in tree.links)
 
 
 def put_render_over_plate(output: bpy.types.Node, place: tuple[float, float]) -> Socket:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array, Float64Array
 
-#: The name of these images, which a leading dot hides in menus; the custom property with the key of their pixels.
-_NAME, _KEY = ".Camera Response Linear", "camera_response_key"
+#: The custom property of these images with the key of their pixels.
+_KEY = "camera_response_key"
 
 #: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
 _LARGEST = 65535
@@ -35,7 +35,7 @@ _LARGEST = 65535
 #: Rows that are converted at a time: few enough to stay in the processor's cache.
 _ROWS = 16
 
-#: Seconds after the last change of the exposure until linear plates are shown with it: a slider waits for none of them.
+#: Seconds after the last change of the exposure or frame until linear plates show it: no slider or player waits.
 _PAUSE = 0.2
 
 
@@ -51,7 +51,8 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
     if not buffer.write(str(path)):
         raise AddonError(f"{path}: cannot be written: {buffer.geterror()}")
     linear = _linear_image(plate) or bpy.data.images.load(str(path))
-    linear.name, linear[COMPARED_PLATE], linear[_KEY] = _NAME, plate, key
+    linear.name = f".Linear view of {plate.name}"  # a leading dot hides it in menus
+    linear[COMPARED_PLATE], linear[_KEY] = plate, key
     linear.colorspace_settings.name = color_space
     linear.reload()
     space.image = linear
@@ -106,6 +107,12 @@ def end_all() -> None:
         bpy.data.images.remove(image)
 
 
+def is_frame_shown() -> bool:
+    """Return whether an editor shows the linear plate of a sequence or movie."""
+    plates = (compared_plate(space.image) for space in _image_editors())
+    return any(plate is not None and plate.source != "FILE" for plate in plates)
+
+
 def renew_soon() -> None:
     """Call `renew` once this has not been called for a moment."""
     with suppress(ValueError):  # none is waiting
@@ -114,11 +121,12 @@ def renew_soon() -> None:
 
 
 def renew() -> None:
-    """Show linear plates with the present exposure, where they are shown."""
+    """Show linear plates with the present exposure and at the present frame, where they are shown."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR" and compared_plate(area.spaces.active.image) is not None:
-                with bpy.context.temp_override(window=window, area=area):
+                # the operator has reported what it cannot read, such as a missing frame
+                with bpy.context.temp_override(window=window, area=area), suppress(RuntimeError):
                     bpy.ops.crf.compare(is_after=True)
                 area.tag_redraw()
 

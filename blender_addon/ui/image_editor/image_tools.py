@@ -26,14 +26,23 @@ REACH = 2
 PICK_HINT = "Click on something gray in the plate  |  Esc to cancel"
 
 
+#: The entry of the key in Blender's keymaps, with its keymap, while it is there.
+_keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
+
+
 class CRF_OT_compare(bpy.types.Operator):
-    """Show the plate, or the linear plate with the present exposure; nothing but the editor changes."""
+    """Show the plate, or the linear plate with the present exposure, or switch; nothing but the editor changes."""
 
     bl_idname = "crf.compare"
     bl_label = "Compare Plate and Linear Plate"
-    bl_description = "Show the plate as it is, or as linear light with the present exposure; only the view changes"
+    bl_description = (
+        "Show the plate as it is, or as linear light with the present exposure; only the view changes. Shift Z switches"
+        " with the mouse over the picture: see Image in the Keymap of the Preferences"
+    )
 
-    is_after: bpy.props.BoolProperty(name="After", description="Show the linear plate", options={"SKIP_SAVE"})
+    is_after: bpy.props.BoolProperty(
+        name="After", description="Show the linear plate. Left out: the other of the two", options={"SKIP_SAVE"}
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -43,13 +52,35 @@ class CRF_OT_compare(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Show the one or the other."""
         space = context.space_data
+        is_switch = not self.properties.is_property_set("is_after")
+        is_after = plates.compared_plate(space.image) is None if is_switch else self.is_after
         try:
             with comparison.same_view(context):
                 comparison.end(space)
-                if self.is_after:
+                if is_after:
                     _show_linear(space)
         except expected_errors() as problem:
             return failed(self, problem)
+        return {"FINISHED"}
+
+
+class CRF_OT_show_plate(bpy.types.Operator):
+    """Show the plate from which the linear plate in the editor was baked."""
+
+    bl_idname = "crf.show_plate"
+    bl_label = "Show the Plate"
+    bl_description = "Show the plate that this was baked from"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether an Image Editor or Movie Clip Editor shows a baked plate whose plate is in the file."""
+        return context.area is not None and context.area.type != "NODE_EDITOR" and _plate_of_baked(context) is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Show it."""
+        shown = "image" if context.area.type == "IMAGE_EDITOR" else "clip"
+        with comparison.same_view(context):
+            setattr(context.space_data, shown, _plate_of_baked(context))
         return {"FINISHED"}
 
 
@@ -145,6 +176,13 @@ def mean_around(codes: Float32Array, place: tuple[float, float]) -> float:
     return float(square.mean())
 
 
+def _plate_of_baked(context: bpy.types.Context) -> plates.Datablock | None:
+    """Return the plate that the linear plate in an editor was baked from, by its name; None for any other plate."""
+    baked = plates.active_datablock(context)
+    collection = bpy.data.images if isinstance(baked, bpy.types.Image) else bpy.data.movieclips
+    return None if baked is None else collection.get(baked.get(plates.BAKED_FROM, ""))
+
+
 def _is_image_editor(context: bpy.types.Context) -> bool:
     """Return whether an Image Editor is active."""
     return context.space_data is not None and context.space_data.type == "IMAGE_EDITOR"
@@ -157,6 +195,9 @@ def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
     stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
     if comparison.show_again(space, key := _key(space.image, stops)):
         return
+    if space.image_user.use_auto_refresh:  # Blender updates the frame while the editor shows the plate only
+        timing = compositor.FrameTiming.from_user(space.image_user)
+        space.image_user.frame_current = timing.number_on(bpy.context.scene.frame_current)
     codes = comparison.code_values(space.image, space.image_user)
     pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
     comparison.begin(space, pixels, lazy_import.load(".scene.nodes.plate_group").linear_rec709(), key)
@@ -169,12 +210,28 @@ def _key(plate: bpy.types.Image, stops: float) -> str:
     return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source == "FILE" else ""
 
 
-register, _unregister_classes = bpy.utils.register_classes_factory(
-    (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_compare, CRF_OT_show_plate, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
 )
 
 
+def register() -> None:
+    """Register the tools, and the key where there is a window."""
+    _register_classes()
+    if not bpy.app.background:
+        add_key()
+
+
+def add_key() -> None:
+    """Add the key that switches between the plate and the linear plate; Blender uses it for nothing in this editor."""
+    keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Image", space_type="IMAGE_EDITOR")
+    _keys.append((keymap, keymap.keymap_items.new(CRF_OT_compare.bl_idname, "Z", "PRESS", shift=True)))
+
+
 def unregister() -> None:
-    """Show the plates again, and unregister the tools."""
+    """Show the plates again, and remove the key and the tools."""
     comparison.end_all()
+    while _keys:
+        keymap, item = _keys.pop()
+        keymap.keymap_items.remove(item)
     _unregister_classes()

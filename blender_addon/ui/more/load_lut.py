@@ -30,10 +30,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
     filepath: bpy.props.StringProperty(
-        name="File",
-        description="The LUT file",
-        subtype="FILE_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        name="File", description="The LUT file", subtype="FILE_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"}
     )
     filter_glob: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 

@@ -33,9 +33,10 @@ def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context, *, has_nod
     view = color_management.darker_view(context.scene)
     if not view:
         return
-    draw_text(layout, f"{view} darkens the highlights of the plate.", letters_of(context), icon="INFO")
+    box = layout.box()
+    draw_text(box, f"{view} darkens the highlights of the plate.", letters_of(context), icon="INFO")
     if color_management.has_standard_view(context.scene):
-        column = layout.column(align=True)
+        column = box.column(align=True)
         column.operator(CRF_OT_standard_view.bl_idname, icon="HIDE_OFF")
         if has_nodes:
             column.operator(CRF_OT_add_look.bl_idname, text="Match the Photograph", icon="CAMERA_DATA")
