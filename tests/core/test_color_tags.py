@@ -98,7 +98,7 @@ class TestIccProfiles:
             profile({}),
             profile({"rXYZ": b"XYZ ", "gXYZ": b"", "bXYZ": bytes(20)}),
             profile({name: numbers(b"XYZ ", (0.3214, 0.3333, 0.275)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
-            profile({name: numbers(b"XYZ ", (0.5, 0.5, 0.5)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
+            matrix_profile(REC709, **{f"{'rgb'[k]}XYZ": numbers(b"XYZ ", np.eye(3)[k] / 2) for k in range(3)}),
             matrix_profile(OWN, chad=numbers(b"sf32", np.zeros(9))),
             matrix_profile(OWN, chad=numbers(b"sf32", np.diag([1, -4, 1]))),
         ],
@@ -137,6 +137,11 @@ class TestIccProfiles:
     def test_a_linear_curve_is_seen(self, version, curve, is_linear):
         curves = {f"{name}TRC": curve for name in "rgb"}
         assert read_icc(matrix_profile(REC2020, version=version, **curves)).transfer == ("linear" if is_linear else "")
+
+    def test_an_encoding_is_known_by_the_name_of_the_profile(self):
+        name = "S-Log3 S-Gamut3.Cine".encode("utf-16-be")
+        described = b"mluc" + struct.pack(">4xII4sII", 1, 12, b"enUS", len(name), 28) + name
+        assert read_icc(matrix_profile(REC2020, desc=described)).transfer == "Sony S-Log3"
 
     @pytest.mark.parametrize(
         ("light", "transfer"),

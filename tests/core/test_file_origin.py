@@ -10,6 +10,8 @@ from crfnet_core.posterior import Family
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
+IJG = {"luma_table": scaled_table(ANNEX_K_LUMA, 92)}
+IJG_FINE = {"luma_table": scaled_table(ANNEX_K_LUMA, 99)}
 
 
 def origin(**fields):
@@ -49,17 +51,13 @@ def test_shape_of_the_picture(width, height, shape):
         (0, 0, {}, None),
         # a program that scales may rewrite the size in EXIF
         (493, 328, OWN_CAMERA | {"exif_size": (493, 328)}, True),
-        (640, 480, OWN_CAMERA | {"exif_size": (640, 480)}, False),
+        (640, 480, OWN_CAMERA | IJG | {"exif_size": (640, 480), "has_jfif": True}, True),
         (2048, 1365, OWN_CAMERA | {"exif_size": (2048, 1365)}, None),
         (4000, 3001, OWN_CAMERA | {"exif_size": (4000, 3001)}, False),
     ],
 )
 def test_scaled_or_not(width, height, fields, is_scaled):
     assert origin(width=width, height=height, **fields).is_scaled is is_scaled
-
-
-IJG = {"luma_table": scaled_table(ANNEX_K_LUMA, 92)}
-IJG_FINE = {"luma_table": scaled_table(ANNEX_K_LUMA, 99)}
 
 
 @pytest.mark.parametrize(
