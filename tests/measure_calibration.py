@@ -12,16 +12,16 @@ import argparse
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration import calibrate_pairs, calibrate_stack
-from crfnet_core.calibration.curve_model import in_file_codes
+from crfnet_core.calibration import MeasuredResponse, calibrate_pairs, calibrate_stack
+from crfnet_core.calibration.curve_model import in_camera_responses, in_file_codes
 from crfnet_core.errors import CalibrationError
-from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
+from crfnet_core.response.metrics import scale_error, shape_error
 from tests.helpers.pairs import drawn_options, make_pair, spoil
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
@@ -29,10 +29,8 @@ DATA = Path(__file__).parent / "data"
 
 KINDS = {
     "8 frames, 1 stop apart": StackOptions(),
-    "the same, PNG": StackOptions(quality=0),
     "the same, noisy (ISO 3200), JPEG 75": StackOptions(shot_noise=1e-3, read_noise=3e-3, quality=75),
     "12 frames, 1/3 stop apart": StackOptions(frames=12, step=1),
-    "5 frames, 2 stops apart": StackOptions(frames=5, step=6),
     "4 frames, 2 stops apart": StackOptions(frames=4, step=6),
     "white balance changes, 0.1 stop": StackOptions(balance=0.1),
     "handheld: shifted by up to 7 pixels": StackOptions(
@@ -41,6 +39,9 @@ KINDS = {
     "white is code 251": StackOptions(white=251 / 255),
     "no frame reaches white": StackOptions(brightest=97, ceiling=0.5),
 }
+
+#: Methods of OpenCV.
+METHODS = ("Debevec", "Robertson")
 
 #: Local tone mapping of simulated pairs, and ways to make two files that are not a pair.
 LOCAL = {f"pairs, local tone mapping {part:.2f}": part for part in (0.0, 0.05, 0.15)}
@@ -53,67 +54,12 @@ EDITS = ("crop of 99 %", "flipped", "blurred", "vignette", "saturation", "levels
 def responses(count: int, first: int = 0) -> list[ResponseCurve]:
     """Return responses: cameras and EMoR draws in turn, from a number on; before number 0 the bundled photograph's."""
     table = np.loadtxt(DATA / "plate_response.csv", delimiter=",", skiprows=1)
-    bank, rng = ResponseBank.load(), np.random.default_rng(7)
-    cameras = rng.permutation([i for i, family in enumerate(bank.families) if family in IN_CAMERA])
+    cameras = np.random.default_rng(7).permutation(in_camera_responses())
     drawn = [
-        emor_response(100 + i) if i % 2 else ResponseCurve.from_samples(bank.brightness[cameras[i % len(cameras)]])
+        emor_response(100 + i) if i % 2 else ResponseCurve.from_samples(cameras[i % len(cameras)])
         for i in range(first, first + count)
     ]
     return drawn if first else [ResponseCurve.from_samples(table[:, 1]), *drawn[:-1]]
-
-
-def errors(true: ResponseCurve, found: ResponseCurve, counts: np.ndarray) -> tuple[float, float, float, float]:
-    """Return shape and scale errors in stops, E_est and E_lin."""
-    return (
-        shape_error(true, found),
-        abs(scale_error(true, found)),
-        estimation_error(true, found),
-        linearization_error(np.arange(256) / 255, true, found, counts=counts),
-    )
-
-
-def measure(options: StackOptions, scenes: list[Path], curves: list[ResponseCurve]) -> dict[str, list]:
-    """Return the errors of every method on a stack of every response, and of ours the standard scores and the time."""
-    found: dict[str, list] = {name: [] for name in ("crfnet", "Debevec", "Robertson", "scores", "seconds", "refused")}
-    for index, response in enumerate(curves):
-        with tempfile.TemporaryDirectory() as folder:
-            stack = StackOptions(**{**vars(options), "seed": index})
-            paths = make_stack(Path(folder), light_of(scenes[index % len(scenes)]), response, stack)
-            true = in_file_codes(response, stack.white)
-            begin = time.process_time()
-            try:
-                ours = calibrate_stack(paths)
-            except CalibrationError as problem:
-                found["refused"].append(str(problem))
-                continue
-            found["seconds"].append(time.process_time() - begin)
-            found["crfnet"].append(errors(true, ours.curve, ours.counts))
-            shape, scale = found["crfnet"][-1][:2]
-            found["scores"].append((shape / ours.uncertainty.shape_stops, scale / ours.uncertainty.scale_stops))
-            for method in ("Debevec", "Robertson"):
-                try:
-                    curve = opencv_response(method, paths, label_seconds(stack), true)
-                except ValueError:
-                    found[method].append((np.nan,) * 4)
-                    continue
-                found[method].append(errors(true, curve, ours.counts))
-    return found
-
-
-def row(kind: str, found: dict[str, list]) -> str:
-    """Return a row of the table: median (largest)."""
-    ours = np.array(found["crfnet"])
-    cells = [f"{np.median(values):.3f} ({values.max():.3f})" for values in ours.T[[0, 1]]]
-    cells += [f"{np.median(values):.2f} ({values.max():.2f})" for values in ours.T[[2]]]
-    cells += [f"{np.median(ours[:, 3]):.4f}"]
-    for method in ("Debevec", "Robertson"):
-        theirs = np.array(found[method])
-        failed = f" ({int(np.isnan(theirs[:, 0]).sum())} failed)" if np.isnan(theirs).any() else ""
-        known = theirs[~np.isnan(theirs[:, 0])]
-        cells.append(f"{np.median(known[:, 0]):.3f}, {np.median(known[:, 2]):.2f}{failed}" if len(known) else "failed")
-    within = (np.array(found["scores"]) < 2).mean(axis=0)
-    cells += [f"{within[0]:.0%}, {within[1]:.0%}", f"{np.median(found['seconds']):.1f}"]
-    return f"| {kind} | {len(ours)} | " + " | ".join(cells) + " |"
 
 
 def pair_curves(count: int, bodies: Path | None, first: int) -> list[ResponseCurve]:
@@ -125,56 +71,77 @@ def pair_curves(count: int, bodies: Path | None, first: int) -> list[ResponseCur
     return [known[i // 2] if i % 2 == 0 and i // 2 < len(known) else next(others) for i in range(count)]
 
 
-def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, options) -> dict:
-    """Return the errors of a simulated pair, its standard scores, and what was seen."""
-    paths = make_pair(folder, light, response, options)
-    begin = time.process_time()
-    found = calibrate_pairs(paths)
-    shape, scale = shape_error(response, found.curve), scale_error(response, found.curve)
-    low, high = found.codes_seen
+def collected(measure: Callable[[Path, int], dict], count: int) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Return what is measured `count` times, by name, and the codes of what was refused."""
+    rows, refused = [], []
+    for index in range(count):
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                rows.append(measure(Path(folder), index))
+            except CalibrationError as problem:
+                refused.append(problem.code)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}, refused
+
+
+def errors(true: ResponseCurve, found: MeasuredResponse, begin: float) -> dict:
+    """Return the errors of a measurement in stops and in stated deviations, and the processor time since `begin`."""
+    shape, scale = shape_error(true, found.curve), abs(scale_error(true, found.curve))
     return {
-        "shape": shape,
-        "scale": abs(scale),
-        "shape score": shape / found.uncertainty.shape_stops,
-        "scale score": abs(scale) / found.uncertainty.scale_stops,
-        "local": found.local,
-        "seen": low <= 25 and high >= 235,
-        "basis": found.white_basis,
-        "stated": found.uncertainty.shape_stops,
-        "scale stated": found.uncertainty.scale_stops,
         "seconds": time.process_time() - begin,
+        "shape": shape,
+        "scale": scale,
+        "scores": (shape / found.uncertainty.shape_stops, scale / found.uncertainty.scale_stops),
     }
 
 
-def measure_pairs(kind: str, local: float, scenes: list[Path], curves, *, first: int, verbose: bool) -> None:
-    """Print the row of a kind of pairs."""
-    found, refused = [], []
-    for index in range(len(curves)):
-        with tempfile.TemporaryDirectory() as folder:
-            options = drawn_options(first + index, local=local)
+def stack_row(kind: str, scenes: list[Path], curves: list[ResponseCurve]) -> str:
+    """Return a row of the table of stacks: median (largest)."""
+
+    def measure(folder: Path, index: int) -> dict:
+        options = StackOptions(**{**vars(KINDS[kind]), "seed": index})
+        paths = make_stack(folder, light_of(scenes[index % len(scenes)]), curves[index], options)
+        true, begin = in_file_codes(curves[index], options.white), time.process_time()
+        row = errors(true, calibrate_stack(paths), begin)
+        for method in METHODS:
             try:
-                light = light_of(scenes[index % len(scenes)])
-                found.append(measure_pair(Path(folder), light, curves[index], options))
-            except CalibrationError as problem:
-                refused.append(problem.code)
-            if verbose:
-                print(index, scenes[index % len(scenes)].stem, len(refused), found[-1:], flush=True)
-    shape, scale = (np.array([row[name] for row in found]) for name in ("shape", "scale"))
-    scores = np.array([[row["shape score"], row["scale score"]] for row in found])
-    is_seen = np.array([row["seen"] for row in found], dtype=bool)
-    within = [
-        ", ".join(f"{part:.0%}" for part in (scores[chosen] < limit).mean(axis=0))
-        for chosen in (is_seen, np.ones_like(is_seen))
-        for limit in (1, 2)
-    ]
-    mapped, seconds = (spread(np.array([row[name] for row in found])) for name in ("local", "seconds"))
-    print(
-        f"{kind}: {len(found)} measured. Shape, median, 90 %, largest: {spread(shape[is_seen])} ({is_seen.sum()} with"
-        f" codes 25 to 235 seen), {spread(shape)} (all). Scale: {spread(scale)}. Within 1 and 2 standard deviations"
-        f" (shape, scale), seen, then all: {'; '.join(within)}. Local: {mapped}. CPU seconds: {seconds}."
-        f" Refused {len(refused)}: {dict(Counter(refused))}",
-        flush=True,
-    )
+                row[method] = shape_error(true, opencv_response(method, paths, label_seconds(options), true))
+            except ValueError:
+                row[method] = np.nan
+        return row
+
+    found, refused = collected(measure, len(curves))
+    cells = [f"{np.median(found[name]):.3f} ({found[name].max():.3f})" for name in ("shape", "scale")]
+    cells.append(", ".join(f"{np.nanmedian(found[name]):.3f}" for name in METHODS))
+    cells.append(", ".join(f"{part:.0%}" for part in (found["scores"] < 2).mean(axis=0)))
+    return f"| {kind} | {' | '.join(cells)} | {np.median(found['seconds']):.1f} | {dict(Counter(refused)) or ''} |"
+
+
+def pair_lines(kind: str, scenes: list[Path], curves: list[ResponseCurve], *, first: int, verbose: bool) -> list[str]:
+    """Return how good pairs of a kind are measured."""
+
+    def measure(folder: Path, index: int) -> dict:
+        scene, options = scenes[index % len(scenes)], drawn_options(first + index, local=LOCAL[kind])
+        paths = make_pair(folder, light_of(scene), curves[index], options)
+        begin = time.process_time()
+        found = calibrate_pairs(paths)
+        low, high = found.codes_seen
+        row = errors(curves[index], found, begin) | {
+            "local": found.local,
+            "seen": low <= 25 and high >= 235,
+            "basis": str(found.white_basis),
+        }
+        if verbose:
+            print(index, scene.stem, row, flush=True)
+        return row
+
+    found, refused = collected(measure, len(curves))
+    lines = [f"{kind}: {len(found['shape'])} measured; refused: {dict(Counter(refused))}"]
+    for words, chosen in (("codes 25 to 235 seen", found["seen"]), ("all", np.ones(len(found["seen"]), dtype=bool))):
+        within = [", ".join(f"{part:.0%}" for part in (found["scores"][chosen] < most).mean(axis=0)) for most in (1, 2)]
+        spreads = [f"{name} {spread(found[name][chosen])}" for name in ("shape", "scale", "local", "seconds")]
+        lines.append(f"{words} ({chosen.sum()}), median, 90 %, largest: {'; '.join(spreads)}; shape, scale within one")
+        lines[-1] += f" deviation: {within[0]}; two: {within[1]}"
+    return lines
 
 
 def spread(values: np.ndarray) -> str:
@@ -182,24 +149,23 @@ def spread(values: np.ndarray) -> str:
     return ", ".join(f"{value:.3f}" for value in np.quantile(values, [0.5, 0.9, 1])) if len(values) else "-"
 
 
-def measure_wrong(kinds: tuple[str, ...], count: int, scenes: list[Path], curves, *, first: int) -> None:
-    """Print how many files that are not a pair, or are edited, are refused, and how wrong the others are."""
-    accepted, codes = [], []
-    for index in range(count):
-        kind, seed = kinds[index % len(kinds)], first + index
+def spoiled_lines(kinds: tuple[str, ...], scenes: list[Path], curves: list[ResponseCurve], *, first: int) -> list[str]:
+    """Return how many files that are not a pair, or are edited, are refused, and how wrong the others are."""
+    codes: Counter[tuple[str, str]] = Counter()
+    lines = []
+    for index, curve in enumerate(curves):
+        kind, options = kinds[index % len(kinds)], drawn_options(first + index)
+        light, other = (light_of(scenes[number % len(scenes)]) for number in (index, index + 1))
         with tempfile.TemporaryDirectory() as folder:
-            light, options = light_of(scenes[index % len(scenes)]), drawn_options(seed)
-            raw, jpeg = make_pair(Path(folder), light, curves[index], options)
-            other = light_of(scenes[(index + 1) % len(scenes)])
-            spoil(kind, Path(folder), jpeg, other, light, curves[index], options)
+            paths = make_pair(Path(folder), light, curve, options)
+            spoil(kind, Path(folder), paths[1], other, light, curve, options)
             try:
-                found = calibrate_pairs([raw, jpeg])
-                error, stated = shape_error(curves[index], found.curve), found.uncertainty.shape_stops
-                accepted.append(f"{kind} {index}: {error:.3f} ({stated:.3f})")
+                found = calibrate_pairs(paths)
+                shape, stated = shape_error(curve, found.curve), found.uncertainty.shape_stops
+                lines.append(f"measured: {kind}, shape {shape:.3f}, stated {stated:.3f}")
             except CalibrationError as problem:
-                codes.append((kind, problem.code))
-    print(f"{len(codes)} of {count} refused: {dict(Counter(codes))}", flush=True)
-    print(f"accepted, with the error of the shape (and the stated one): {accepted}", flush=True)
+                codes[kind, problem.code] += 1
+    return [f"{codes.total()} of {len(curves)} refused: {dict(codes)}", *lines]
 
 
 def main() -> None:
@@ -215,27 +181,18 @@ def main() -> None:
     options = parser.parse_args()
     scenes = sorted(options.linear.glob("*.exr"))
     scenes = [scenes[i] for i in np.random.default_rng(3).permutation(len(scenes))]
-    if options.pairs:
-        curves, first = pair_curves(options.pairs, options.bodies, options.first), options.first
-        for kind, local in LOCAL.items():
-            if options.only in kind:
-                measure_pairs(kind, local, scenes, curves, first=first, verbose=options.verbose)
-        for name, kinds in (("wrong", WRONG), ("edits", EDITS)):
-            if options.only in name:
-                print(name, end=": ")
-                measure_wrong(kinds, options.pairs, scenes, curves, first=first)
+    if not options.pairs:
+        print("| stacks | shape | scale | Debevec, Robertson | within 2 deviations: shape, scale | CPU s | refused |")
+        print("| --- | --- | --- | --- | --- | --- | --- |")
+        for kind in (name for name in KINDS if options.only in name):
+            print(stack_row(kind, scenes, responses(options.responses)), flush=True)
         return
-    print(
-        "| stacks | number | shape, stops | scale, stops | E_est | E_lin | Debevec: shape, E_est"
-        " | Robertson: shape, E_est | within 2 standard deviations: shape, scale | CPU s |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-    )
-    for kind, stack in KINDS.items():
-        if options.only in kind:
-            found = measure(stack, scenes, responses(options.responses))
-            print(row(kind, found), flush=True)
-            for problem in found["refused"]:
-                print(f"refused: {problem}", flush=True)
+    curves, first = pair_curves(options.pairs, options.bodies, options.first), options.first
+    for kind in (name for name in LOCAL if options.only in name):
+        print(*pair_lines(kind, scenes, curves, first=first, verbose=options.verbose), sep="\n", flush=True)
+    for name, kinds in (("wrong", WRONG), ("edits", EDITS)):
+        if options.only in name:
+            print(f"{name}:", *spoiled_lines(kinds, scenes, curves, first=first), sep="\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -44,14 +44,13 @@ def fit_stack(seen: Observations, exposures: Float64Array, weights: Float64Array
     state = problem.solved(np.append(weights, np.zeros(problem.offsets.shape[-1])))
     offsets, irradiance = problem.offsets @ state[problem.size :], problem.irradiance(state)
     log_light = irradiance[:, None] + exposures + offsets.T[seen.channel]
+    brightness, _ = problem.model.brightness(state[: problem.size], log_light)
     return StackFit(
         weights=state[: problem.size],
         offsets=offsets,
         log_irradiance=irradiance,
         covariance=problem.covariance(state),
-        residual=np.where(
-            seen.is_used, seen.brightness - problem.model.brightness(state[: problem.size], log_light)[0], np.nan
-        ),
+        residual=np.where(seen.is_used, seen.brightness - brightness, np.nan),
         cost=problem.cost(state),
     )
 

@@ -48,9 +48,13 @@ def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
     The response, its errors and its band are the camera's. The photographs keep their windows, metadata and
     recognition: no stored response makes log footage a photograph.
     """
-    answer = camera_estimate(camera)
+    answer, own = camera_estimate(camera), camera.settings.camera
+    others = [
+        origin.camera for origin in estimate.origins if own and origin.camera.casefold() not in ("", own.casefold())
+    ]
     notices = input_warnings(estimate.recognition, estimate.origins)
-    notices += [*_other_cameras(camera, estimate), *answer.warnings]
+    notices += [Notice("other_camera", {"other": other, "name": camera.name, "camera": own}) for other in others]
+    notices += answer.warnings
     return replace(
         answer,
         windows=estimate.windows,
@@ -84,14 +88,3 @@ def brightness_per_stop(curve: ResponseCurve) -> Float64Array:
     rise = np.gradient(curve.brightness, curve.irradiance)
     rise[-2:] = np.minimum(rise[-2:], rise[-3])
     return np.asarray(np.log(2) * curve.irradiance * rise)
-
-
-def _other_cameras(camera: Camera, estimate: ResponseEstimate) -> list[Notice]:
-    """Return a warning for each other camera that the files name."""
-    name = camera.settings.camera
-    others = dict.fromkeys(origin.camera for origin in estimate.origins if origin.camera)
-    return [
-        Notice("other_camera", {"other": other, "name": camera.name, "camera": name})
-        for other in others
-        if name and other.casefold() != name.casefold()
-    ]

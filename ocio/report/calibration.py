@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.calibration import Calibration, Comparison, FrameReport, PairCalibration, ShotReport
+from crfnet_core.calibration import Calibration, Comparison, PairCalibration
 from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.types import plain_values
@@ -102,9 +102,23 @@ def calibration_document(
 
 
 def _stack_document(calibration: Calibration) -> dict[str, Any]:
-    """Return the entries that only a stack has."""
+    """Return the entries that only a stack has; null of a frame that was left out."""
+    frames = [
+        {
+            "name": frame.path.name,
+            "seconds": frame.label.seconds,
+            "f_number": frame.label.f_number,
+            "iso": frame.label.iso,
+            "stops": rounded(frame.stops),
+            "offsets_stops": rounded(frame.offsets) if frame.is_used else None,
+            "shift_pixels": list(frame.shift),
+            "residual_codes": rounded(frame.residual) if frame.is_used else None,
+            "used": frame.is_used,
+        }
+        for frame in calibration.frames
+    ]
     return {
-        "frames": [_frame_document(frame) for frame in calibration.frames],
+        "frames": frames,
         "labels": calibration.labels,
         "white": rounded(calibration.white),
         "reaches_white": calibration.reaches_white,
@@ -114,43 +128,27 @@ def _stack_document(calibration: Calibration) -> dict[str, Any]:
 
 def _pair_document(calibration: PairCalibration) -> dict[str, Any]:
     """Return the entries that only raw files have."""
+    shots = [
+        {
+            "name": shot.path.name,
+            "jpeg": shot.jpeg and shot.jpeg.name,
+            "iso": shot.iso,
+            "cells": shot.cells,
+            "offset_stops": rounded(shot.offset),
+            "residual_codes": rounded(shot.residual),
+            "correlation": rounded(shot.correlation),
+            "used": True,
+        }
+        for shot in calibration.shots
+    ]
     return {
         "method": "raw pairs",
-        "frames": [_shot_document(shot) for shot in calibration.shots],
+        "frames": shots,
         "white_basis": str(calibration.white_basis),
         "codes_seen": rounded(list(calibration.codes_seen)),
         "color_matrix": rounded(calibration.matrix),
         "local_exponent": rounded(calibration.local),
         "corner_stops": rounded(calibration.corner),
-    }
-
-
-def _frame_document(frame: FrameReport) -> dict[str, Any]:
-    """Return the report of a frame for JSON; null where it was left out."""
-    return {
-        "name": frame.path.name,
-        "seconds": frame.label.seconds,
-        "f_number": frame.label.f_number,
-        "iso": frame.label.iso,
-        "stops": rounded(frame.stops),
-        "offsets_stops": rounded(frame.offsets) if frame.is_used else None,
-        "shift_pixels": list(frame.shift),
-        "residual_codes": rounded(frame.residual) if frame.is_used else None,
-        "used": frame.is_used,
-    }
-
-
-def _shot_document(shot: ShotReport) -> dict[str, Any]:
-    """Return the report of a pair for JSON."""
-    return {
-        "name": shot.path.name,
-        "jpeg": shot.jpeg and shot.jpeg.name,
-        "iso": shot.iso,
-        "cells": shot.cells,
-        "offset_stops": rounded(shot.offset),
-        "residual_codes": rounded(shot.residual),
-        "correlation": rounded(shot.correlation),
-        "used": True,
     }
 
 

@@ -126,11 +126,10 @@ def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit,
 
 def _check_counts(pairs: Sequence[Pair], counts: Float64Array) -> None:
     """Refuse pairs that show too few usable cells, given how many each does, or one of them that shows hardly any."""
-    if counts.sum() < LEAST_CELLS:
-        raise CalibrationError("few_cells", path=pairs[0].path, count=int(counts.sum()), least=LEAST_CELLS)
-    if counts.min() < LEAST_OF_SHOT:
-        path = pairs[int(counts.argmin())].path
-        raise CalibrationError("few_cells", path=path, count=int(counts.min()), least=LEAST_OF_SHOT)
+    poorest = pairs[int(counts.argmin())]
+    for pair, count, least in ((pairs[0], counts.sum(), LEAST_CELLS), (poorest, counts.min(), LEAST_OF_SHOT)):
+        if count < least:
+            raise CalibrationError("few_cells", path=pair.path, count=int(count), least=least)
 
 
 def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:

@@ -18,7 +18,7 @@ from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 from tests.helpers.refusals import refused
 from tests.helpers.schemas import problems_by, read_schema
-from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
+from tests.helpers.stacks import light_of
 
 FILES = {"eos20d.spi1d", "eos20d.cube", "eos20d.clf", "eos20d.json", "eos20d_sheet.png", "config.ocio"}
 
@@ -48,21 +48,6 @@ def test_the_luts_hold_the_inverse_of_the_response(camera, true_response):
     assert shape_error(true_response, response_of_lut(lut)) < 0.05
     assert any("Measured from 6 frames of Canon EOS 20D" in comment for comment in lut.comments)
     assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
-
-
-def test_the_lut_reads_the_code_of_white_as_1(crfnet, root, tmp_path):
-    """And the codes below it as the light that the camera saw."""
-    code = 240
-    light, response = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2], emor_response(100)
-    paths = make_stack(tmp_path, light, response, StackOptions(white=code / 255, quality=0))
-    done = crfnet("calibrate", *paths, "--out", tmp_path / "out", "--name", "a", "--no-sheet")
-    assert (done.code, done.err) == (0, "")
-    lut = read_lut(tmp_path / "out" / "a.spi1d")
-    np.testing.assert_allclose(lut.apply(np.arange(code, 256) / 255), 1, atol=2e-3)
-    codes = np.arange(16, code + 1)
-    stops = np.log2(lut.apply(codes / 255) / response.inverse(codes / code))
-    assert np.std(stops) < 0.005
-    assert abs(np.mean(stops)) < 0.02
 
 
 def test_the_document_says_all(camera):
