@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import MOST_BRIGHTNESS, SAMPLES, ResponseCurve
 
 from ..defaults import LUT_LENGTH
 from ..errors import LutError
@@ -42,9 +42,14 @@ class ResponseFile:
 
 
 def read_response(path: str | Path) -> ResponseFile:
-    """Return the response in a LUT file of either direction; a LUT that brightens is inverted. Raises as `read_lut`."""
+    """Return the response in a LUT file of either direction; a LUT that brightens is inverted.
+
+    Raises as `read_lut`, and a LutError if the LUT takes code values such as 0 to 255: brightness would be black.
+    """
     path, table = Path(path), read_lut(path)
     if not is_forward(table):
+        if table.domain[1] > MOST_BRIGHTNESS:
+            raise LutError("lut_of_codes", path=path, last=table.domain[1])
         return ResponseFile(path, table, table)
     codes = np.linspace(0, 1, LUT_LENGTH)
     inverse = lut_of_channels([Lut1D(strictly_increasing(each.apply_inverse(codes))) for each in table.channels])

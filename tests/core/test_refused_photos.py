@@ -64,6 +64,7 @@ FILES = [
     ("cmyk.tif", tiff(2, 2, samples=4, photometric=5, content=bytes(16)), "other_colors"),
     ("cmyk.jpg", four_inks(), "other_colors"),
     ("lab.tif", tiff(2, 2, photometric=8, content=bytes(12)), "other_colors"),
+    ("icclab.tif", tiff(2, 2, photometric=9, content=bytes(12)), "coding_not_read"),
     ("signed.tif", tiff(2, 2, kind=2, content=bytes(12)), "sample_type"),
     ("long.tif", tiff(2, 2, bits=32, content=bytes(48)), "sample_type"),
     ("bilevel.tif", tiff(8, 2, samples=1, photometric=1, bits=1, content=bytes(2)), "sample_type"),
@@ -95,6 +96,7 @@ def test_folders_and_absent_files_are_refused(tmp_path):
 #: Changes of a JPEG, and the code of the refusal; Pillow would read an endless header byte by byte.
 JPEG_CHANGES = [
     (lambda whole: re.sub(b"(\xff[\xc0\xc2]\0\x11)\x08", rb"\1" + b"\x0c", whole), "coding_not_read"),  # of 12 bits
+    (lambda whole: re.sub(b"\xff[\xc0\xc2]\0\x11", b"\xff\xf7\0\x11", whole), "coding_not_read"),  # JPEG-LS
     (lambda whole: with_jpeg_size(whole, 50000, 50000), "too_many_pixels"),
     (lambda whole: whole[:2] + b"\xff\xe1\0\3a" * 5000 + whole[2:], "damaged"),
     (lambda whole: whole[:2] + b"\xff" * 2**21 + whole[2:], "damaged"),

@@ -14,6 +14,7 @@ from crfnet_core.errors import PhotoError, one_line
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
     *("support is not configured", "is not implemented", "not supported", "nsupported"),
+    "No support for this flavor",  # TIFF in Lab, or of JPEG with 12 bits
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )
 

@@ -18,7 +18,7 @@ _SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
 #: The most segments of a header, and bytes between them, which Pillow reads one by one.
 _MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20
 
-_START_OF_SCAN, _END_OF_IMAGE = 0xDA, b"\xff\xd9"
+_START_OF_SCAN, _END_OF_IMAGE, _JPEG_LS = 0xDA, b"\xff\xd9", 0xF7
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 
@@ -46,6 +46,8 @@ def checked_jpeg(path: Path) -> JpegFile:
             before = end
             if count >= _MOST_SEGMENTS or between > _MOST_BETWEEN:
                 raise damaged(path, "JPEG", "its header has no end")
+            if marker == _JPEG_LS:
+                raise PhotoError("coding_not_read", path=path, kind="JPEG", problem="JPEG-LS")
             if marker in _START_OF_FRAME and (frame := content[scan:end]):
                 if frame[0] != 8:
                     problem = f"{frame[0]} bits per sample"

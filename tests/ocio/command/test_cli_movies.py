@@ -104,21 +104,6 @@ def test_without_pyav_it_says_what_to_do(crfnet, look, movie, tmp_path, monkeypa
 
 
 @needs_av
-@pytest.mark.parametrize(
-    ("more", "code"),
-    [
-        (("--frames", "100-200"), "no_such_frames"),
-        (("--frames", "x"), "bad_frames"),
-        (("--out", "a.exr"), "no_placeholder"),
-    ],
-)
-def test_bad_frames_are_refused(linearize, tmp_path, monkeypatch, more, code):
-    monkeypatch.chdir(tmp_path)
-    assert linearize(*more).refusal == code
-    assert listed(tmp_path) == []
-
-
-@needs_av
 def test_log_footage_is_refused_with_its_color_space_unless_metadata_is_ignored(crfnet, fixed_model, tmp_path):
     path = write_movie(tmp_path / "hdr.mp4", size=(320, 240), tags={"color_trc": 16})
     commands = ("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")

@@ -63,3 +63,10 @@ class TestFiles:
 def test_linear_light_is_not_inverted(tmp_path):
     write_lut(tmp_path / "a.cube", Lut1D([0, 1]))
     assert not read_response(tmp_path / "a.cube").was_forward
+
+
+def test_a_lut_of_code_values_is_refused(tmp_path):
+    """A plate would be black."""
+    write_lut(tmp_path / "a.spi1d", Lut1D(GRID**2.2, domain=(0, 255)))
+    with refused(LutError, "lut_of_codes", last=255):
+        read_response(tmp_path / "a.spi1d")

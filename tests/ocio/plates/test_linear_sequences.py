@@ -12,7 +12,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.luts.lut1d import Lut1D
 from crfnet_core.photograph.image_io import read_photo
-from tests.helpers.folders import listed, tree
+from tests.helpers.folders import listed
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
@@ -43,16 +43,6 @@ def test_every_frame_of_a_sequence_is_written(tmp_path, out):
     for number, path in zip((1, 2, 4, 7), report.written, strict=True):
         expected = LUT.apply(read_photo(tmp_path / f"plate.{number:04d}.png").pixels).astype(np.float16)
         np.testing.assert_array_equal(read_exr(path)[0], expected)
-
-
-@pytest.mark.parametrize("workers", [1, 7])
-def test_workers_change_nothing(tmp_path, out, workers):
-    pattern = write_sequence(tmp_path, range(5))
-    linearize(pattern, out / "a.%d.exr", LUT, workers=workers)
-    expected = tmp_path / "expected"
-    expected.mkdir()
-    linearize(pattern, expected / "a.%d.exr", LUT)
-    assert tree(out) == tree(expected)
 
 
 def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
