@@ -73,7 +73,10 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
         column.label(text=f"Expected error {stops:.2f} stop")
     box.template_icon(icon_value=curve_icon(datablock), scale=_SMALL)
     if context.space_data.type == "IMAGE_EDITOR":
-        _draw_comparison(box, context.space_data)
+        is_after = plates.compared_plate(context.space_data.image) is not None
+        row = box.row(align=True)
+        row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
+        row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
 
 
 def draw_notices(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -152,14 +155,6 @@ def curve_icon(datablock: plates.Datablock) -> int:
         pixels = curve_picture.draw_response(*stored_estimate.curve_and_band(datablock))
         preview.image_pixels_float.foreach_set(pixels.ravel())
     return _previews[key].icon_id
-
-
-def _draw_comparison(layout: bpy.types.UILayout, space: bpy.types.SpaceImageEditor) -> None:
-    """Draw the switch between the plate and the linear plate."""
-    is_after = plates.compared_plate(space.image) is not None
-    row = layout.row(align=True)
-    row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
-    row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
 
 
 def register() -> None:

@@ -22,7 +22,7 @@ from .preferences import absolute, preferences
 
 
 def gather_job(
-    datablock: plates.Datablock, *, is_estimated: bool, despite_verdict: bool = False, arguments: Mapping[str, Any]
+    datablock: plates.Datablock, arguments: Mapping[str, Any], *, is_estimated: bool, despite_verdict: bool = False
 ) -> Job:
     """Return the job of a plate: to apply its stored estimate (`is_estimated`), or to estimate its response anew.
 

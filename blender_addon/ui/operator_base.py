@@ -27,28 +27,31 @@ class ChosenPlate:
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
+    #: Whether the plate must have a response.
+    needs_estimate = False
+
     if TYPE_CHECKING:  # of bpy.types.Operator
         poll_message_set: ClassVar[Callable[[str], None]]
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether it can run on the editor's plate now, and tell why if not; a script names its plate."""
-        is_in_editor = context.area is not None and context.area.type in plates.EDITORS  # not where a script runs
-        return is_allowed(cls, running.why_busy() or (cls.why_not(context) if is_in_editor else ""))
+        why_not = running.why_busy()
+        if context.area is not None and context.area.type in plates.EDITORS:  # not where a script runs
+            why_not = why_not or cls.why_not(context)
+        return is_allowed(cls, why_not)
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:
         """Return why the operator cannot run on the plate of an editor, or an empty text."""
+        if cls.needs_estimate:
+            return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
         return plates.obstacle_in(context)
 
     def chosen_plate(self, context: bpy.types.Context) -> plates.Datablock:
-        """Return the image or clip; an AddonError if there is none."""
-        return plates.chosen_datablock(context, self.image, self.clip)
-
-    def estimated_plate(self, context: bpy.types.Context) -> plates.Datablock:
-        """Return the image or clip, which must have a response; else an AddonError."""
-        datablock = self.chosen_plate(context)
-        if not stored_estimate.is_stored(datablock):
+        """Return the image or clip; an AddonError if there is none, or it lacks a response that it needs."""
+        datablock = plates.chosen_datablock(context, self.image, self.clip)
+        if self.needs_estimate and not stored_estimate.is_stored(datablock):
             raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
         return datablock
 

@@ -13,10 +13,9 @@ from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence, CRF_OT_show_plate
-from .more.add_look import CRF_OT_add_look
 from .more.load_lut import CRF_OT_load_lut
+from .more.looks import CRF_OT_add_look, draw_view
 from .more.other_plates import CRF_OT_copy_response
-from .more.standard_view import draw_view
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .plate_settings import is_applied, is_to_be_applied
 
@@ -43,7 +42,9 @@ class ResponsePanel:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
         layout, datablock = self.layout, plates.active_datablock(context)
         if run := running.current():
-            _draw_progress(layout, run)
+            row = layout.row(align=True)
+            row.progress(factor=run.task.percent / 100, text=run.text)
+            row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
         elif obstacle := plates.obstacle_in(context):
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
             if plates.is_tiled(datablock):
@@ -91,13 +92,6 @@ def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         menu.layout.separator()
         menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
-
-
-def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
-    """Draw how far the run is, with a button that cancels it."""
-    row = layout.row(align=True)
-    row.progress(factor=run.task.percent / 100, text=run.text)
-    row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
 
 
 def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from .errors import CancelledError
@@ -24,8 +25,7 @@ class BackgroundTask(Generic[Returned]):
 
     def __init__(self, function: Callable[[Progress], Returned]) -> None:
         self._function = function
-        self._returned: list[Returned] = []
-        self._raised: BaseException | None = None
+        self._future: Future[Returned] = Future()
         self._cancelled = threading.Event()
         self._thread = threading.Thread(target=self._run, name="camera response", daemon=True)
         self.done, self.total = 0, 0
@@ -59,13 +59,10 @@ class BackgroundTask(Generic[Returned]):
 
     def result(self) -> Returned:
         """Return the result of the function, or raise its exception; the thread must have ended."""
-        if self._raised is not None:
-            raise self._raised
-        (returned,) = self._returned
-        return returned
+        return self._future.result()
 
     def _progress(self, done: int, total: int) -> None:
-        """Keep the progress, and stop the function if it was canceled; runs in the function's thread."""
+        """Keep the progress, and stop the function if it was canceled."""
         self.done, self.total = done, total
         if self.is_cancelled:
             raise CancelledError("Canceled; nothing was changed")
@@ -73,6 +70,6 @@ class BackgroundTask(Generic[Returned]):
     def _run(self) -> None:
         """Call the function and keep its result or its exception for the other thread."""
         try:
-            self._returned.append(self._function(self._progress))
+            self._future.set_result(self._function(self._progress))
         except BaseException as raised:  # noqa: BLE001 - `result` raises it again
-            self._raised = raised
+            self._future.set_exception(raised)

@@ -78,7 +78,7 @@ def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, 
     image = load_sequence(tmp_path / "shot.0000.png")
     run_now(image, "NODES")
     run = operator(image.name, apply="BAKE")
-    run.is_estimated = True
+    run.needs_estimate = True
     run.invoke(interface, None)
     deadline = time.monotonic() + 30
     while not list(tmp_path.rglob("*.exr")) and run._run.task.is_running and time.monotonic() < deadline:

@@ -138,7 +138,13 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
     if image.source == "MOVIE":
-        return _codes_of_movie(image, user.frame_current)
+        codes = codes_of_frame(image, user.frame_current)
+        if codes is None:
+            raise AddonError(
+                f"{image.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as"
+                " an image sequence"
+            )
+        return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
     alpha = alpha_mode(image)
     # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
     if image.is_float or alpha == "PREMUL":
@@ -147,17 +153,6 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if image.channels < 3:
         return pixels[..., :1].repeat(3, axis=2)
     return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
-
-
-def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
-    """Return the code values of a frame of a movie of 8 bits."""
-    codes = codes_of_frame(movie, frame)
-    if codes is None:
-        raise AddonError(
-            f"{movie.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as an"
-            " image sequence"
-        )
-    return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
