@@ -2,7 +2,6 @@
 """Build the Blender extension, one zip per platform and one for the Blenders of Linux distributions: `make addon`.
 
 The folder of the zips is a repository of extensions, from which Blender installs and updates: it has an `index.json`.
-
 Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded once and kept. The same
 sources give the same bytes: the members of a zip are sorted by name, uncompressed, and all of one date; the wheel of
 `crfnet_core` and `crfnet` is built by the setuptools of wheels.sha256, from a folder that holds nothing else.

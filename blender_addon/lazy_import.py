@@ -36,7 +36,7 @@ def load(module: str) -> ModuleType:
 def missing() -> str:
     """Return, in one line, which library is missing or of another build, and what to do; an empty text if none is.
 
-    It looks for the libraries once and imports none of them, so it does not notice one that is damaged.
+    It imports none of them, so it does not notice one that is damaged.
     """
     _expose_blenders_own()
     absent = [name for name in (*_IN_WHEELS, *_IN_BLENDER) if importlib.util.find_spec(name) is None]

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The base of operators: when they can run, the plate that a script names, and how they report a problem."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any
 
 import bpy
 
@@ -22,16 +21,11 @@ class ChosenPlate:
         name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
     clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
+        name="Movie Clip", description="Name of the clip; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
 
     #: Whether the plate must have a response.
     needs_estimate = False
-
-    if TYPE_CHECKING:  # of bpy.types.Operator
-        poll_message_set: ClassVar[Callable[[str], None]]
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -56,7 +50,7 @@ class ChosenPlate:
         return datablock
 
 
-def is_allowed(operator: type[bpy.types.Operator] | type[ChosenPlate], why_not: str) -> bool:
+def is_allowed(operator: Any, why_not: str) -> bool:
     """Return whether an operator can run; its tooltip gives the reason if not."""
     if why_not:
         operator.poll_message_set(why_not)

@@ -30,9 +30,8 @@ WITHHELD = "not applied; to use it all the same, press Apply Anyway (anyway=True
 class PlateOperator(ChosenPlate, PlateChoices):
     """The base of "Estimate Camera Response" and "Apply Camera Response".
 
-    A script, and Blender in the background, calls `execute`, which returns when the job is done. The interface calls
-    `invoke`, which starts the job in another thread, and then `modal` at every event. Either way, nothing in Blender's
-    data changes before the job has succeeded, so an error or Esc leaves everything as it was.
+    A script calls `execute`; the interface calls `invoke`, and then `modal` at every event. Either way, nothing in
+    Blender's data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
     anyway: bpy.props.BoolProperty(

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import bpy
 
 from ..scene import code_values, plates, stored_estimate
@@ -23,15 +21,12 @@ from .plate_settings import is_applied, is_to_be_applied
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
 
 
-class ResponsePanel:
+class ResponsePanel(bpy.types.Panel):
     """The panel, the same in every editor, in a tab of its own: elsewhere, Blender's panels push it out of sight."""
 
     bl_label = "Camera Response"
     bl_region_type = "UI"
     bl_category = "Response"
-
-    if TYPE_CHECKING:  # of bpy.types.Panel
-        layout: bpy.types.UILayout
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -68,19 +63,19 @@ class ResponsePanel:
             _draw_advanced(layout, context, datablock.camera_response_settings)
 
 
-class CRF_PT_image(ResponsePanel, bpy.types.Panel):
+class CRF_PT_image(ResponsePanel):
     """The panel in the Image Editor."""
 
     bl_space_type = "IMAGE_EDITOR"
 
 
-class CRF_PT_clip(ResponsePanel, bpy.types.Panel):
+class CRF_PT_clip(ResponsePanel):
     """The panel in the Movie Clip Editor."""
 
     bl_space_type = "CLIP_EDITOR"
 
 
-class CRF_PT_node(ResponsePanel, bpy.types.Panel):
+class CRF_PT_node(ResponsePanel):
     """The panel in the compositor."""
 
     bl_space_type = "NODE_EDITOR"

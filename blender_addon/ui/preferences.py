@@ -14,12 +14,12 @@ ADDON = __package__.rpartition(".")[0]
 APPLY_MODES = (
     ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor"),
     ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them"),
-    (
-        "EXPORT",
-        "Export",
-        "Write LUT files, and a copy of Blender's OpenColorIO config with a color space for the plate",
-    ),
+    ("EXPORT", "Export", "Write LUTs, and a copy of Blender's OpenColorIO config with a color space for the plate"),
 )
+
+
+#: The properties of a folder that the user chooses.
+FOLDER = {"subtype": "DIR_PATH", "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}}
 
 
 class CRF_AddonPreferences(bpy.types.AddonPreferences):
@@ -30,14 +30,10 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     model: bpy.props.StringProperty(
         name="Model",
         description="Folder of another model, with model.onnx and model.json. Empty: the model in the add-on",
-        subtype="DIR_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        **FOLDER,
     )
     folder: bpy.props.StringProperty(
-        name="Output Folder",
-        description="Folder for baked and exported files. Empty: the plate's own folder",
-        subtype="DIR_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        name="Output Folder", description="Folder for baked and exported files. Empty: the plate's own folder", **FOLDER
     )
     apply_as: bpy.props.EnumProperty(
         name="Apply As",

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The one run that is under way: a job in another thread, and how its progress is shown.
 
-Every display makes Blender draw parts of its window, which takes processor time from the job. So the progress is shown
-only if it has changed, at most every `REDRAW` seconds, and more seldom where drawing is slow; whether the job has ended
-is looked at more often.
+Every display makes Blender draw parts of its window, which takes processor time from the job, so there are few.
 """
 
 from __future__ import annotations
@@ -30,8 +28,7 @@ _current: Run | None = None
 class Run:
     """A job in another thread, with its timer and the display of its progress.
 
-    The window of the context gets the timer, its workspace the text in the status bar. `name` is the plate's,
-    `function` the job, see `BackgroundTask`, and `doing` a verb that stands before the plate's name.
+    `name` is the plate's, `function` the job, see `BackgroundTask`, and `doing` a verb that stands before the name.
     """
 
     def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any], doing: str) -> None:
@@ -58,12 +55,9 @@ class Run:
         self.show()
 
     def show(self) -> None:
-        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now.
-
-        The call after a display comes late by the time that drawing took.
-        """
+        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now."""
         since = time.monotonic() - self._shown_at
-        if self._pause is None:
+        if self._pause is None:  # the call after a display comes late by the time that drawing took
             self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
         text = self.text if self.task.is_cancelled else f"Camera response: {self.text}  |  Esc to cancel"
         if text == self._shown or since < self._pause:
@@ -114,11 +108,8 @@ def stop() -> None:
 
 
 def set_status(workspace: bpy.types.WorkSpace, text: str | None) -> None:
-    """Set the text of the status bar in a workspace, which may have been removed meanwhile.
-
-    Blender goes by the workspace of the context, not by the one that the method belongs to.
-    """
-    with suppress(ReferenceError), bpy.context.temp_override(workspace=workspace):
+    """Set the text of the status bar in a workspace, which may have been removed meanwhile."""
+    with suppress(ReferenceError), bpy.context.temp_override(workspace=workspace):  # else it is set in the present one
         workspace.status_text_set(text)
 
 
@@ -126,7 +117,6 @@ def redraw_editors(manager: bpy.types.WindowManager, *, regions: tuple[str, ...]
     """Have the editors that show the panel drawn again in all windows, or only some types of their regions."""
     for window in manager.windows:
         for area in window.screen.areas:
-            if area.type in EDITORS:
-                for region in area.regions:
-                    if not regions or region.type in regions:
-                        region.tag_redraw()
+            for region in area.regions if area.type in EDITORS else ():
+                if not regions or region.type in regions:
+                    region.tag_redraw()

@@ -17,10 +17,9 @@ Returned = TypeVar("Returned")
 
 
 class BackgroundTask(Generic[Returned]):
-    """One call of a function in a thread of its own.
+    """One call of a function in a thread of its own, which must not touch Blender's data.
 
-    The function gets a progress callback, which it calls with (done, total); canceling takes effect there. It must not
-    touch Blender's data, which belongs to Blender's own thread.
+    The function gets a progress callback, which it calls with (done, total); canceling takes effect there.
     """
 
     def __init__(self, function: Callable[[Progress], Returned]) -> None:

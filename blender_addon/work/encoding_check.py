@@ -39,10 +39,7 @@ def is_said_encoded(job: Job) -> bool:
 
 
 def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
-    """Return whether untagged OpenEXR files of a plate are taken for encoded.
-
-    They are if the user has given them a color space that is not linear, or has ticked Estimate Anyway.
-    """
+    """Return whether untagged OpenEXR files are encoded: by a color space that is not linear, or Estimate Anyway."""
     return is_forced or not is_log_or_linear(plate.color_space, _encoding(plate.color_space, config))
 
 

@@ -7,19 +7,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import (
-    apply,
-    bpy,
-    curve_of,
-    drawn_in,
-    estimate,
-    group_node,
-    labels,
-    load,
-    load_sequence,
-    paint,
-    reopen,
-)
+from .helpers import apply, bpy, curve_of, drawn_in, estimate, group_node, labels, load, load_sequence, paint, reopen
 
 pytestmark = pytest.mark.usefixtures("estimated")
 

@@ -34,12 +34,9 @@ def test_enabled_and_disabled_twice(addon):
         assert hasattr(bpy.types, "CRF_OT_estimate_response")
 
 
-def test_the_estimate_is_the_apis(image, plate_file, estimate):
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert_stored(image, estimate(plate_file))
-
-
-def test_it_survives_in_the_file_and_is_shown_without_the_plate(image, plate_file, tmp_path, estimate, in_editor):
+def test_it_is_the_apis_survives_in_the_file_and_is_shown_without_the_plate(
+    image, plate_file, tmp_path, estimate, in_editor
+):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
     image.use_fake_user = True
     reopen(tmp_path / "shot.blend")

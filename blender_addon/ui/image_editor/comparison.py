@@ -42,8 +42,7 @@ _PAUSE = 0.2
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
     """Show the linear plate in an editor that shows the plate; the `key` finds it again.
 
-    Its pixels, shape (H, W, 4), in a color space, are multiplied by alpha; the bottom row comes first. Raise AddonError
-    if there is no room for its file.
+    Its pixels are as of `linear_pixels`, in a color space. Raise AddonError if there is no room for its file.
     """
     plate, path = space.image, Path(bpy.app.tempdir, f"linear_{space.image.session_uid}.exr")
     buffer = lazy_import.load("OpenImageIO").ImageBuf(np.ascontiguousarray(pixels[::-1]))
@@ -128,8 +127,7 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     """Return the code values of an image, of the frame that an editor shows: float32, shape (H, W, 3 or 4), in [0, 1].
 
     The bottom row comes first, and colors are not multiplied by alpha, which is left out where Blender does not take it
-    for coverage. Raise AddonError if Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels
-    are not code values; CRFNetError if its file cannot be read, or does not hold encoded values.
+    for coverage. Raise AddonError or CRFNetError if the image cannot be read, or does not hold encoded values.
     """
     width, height = image.size
     # Where Blender decodes HEIC, its codes are others by a few; of a sequence, it has the frame that it read last.

@@ -79,12 +79,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
             jobs = [_job(source, datablock) for datablock in chosen]
             comparison.end_all()
             for job in jobs:
-                completed = lazy_import.load(".work.run").run(job)
-                lazy_import.load(".scene.apply").apply(context, completed)
-                datablock = plates.datablock_of_plate(job.plate)
-                datablock.camera_response_settings.apply = source.camera_response_settings.apply
-                if completed.is_applied:
-                    remember_applied(datablock)
+                _apply(context, source, job)
                 done += 1
         except expected_errors() as problem:
             result = failed(self, problem)
@@ -143,6 +138,16 @@ def _job(source: plates.Datablock, target: plates.Datablock) -> "Job":
     origin = stored_estimate.origin(source)
     words = f"From {source.name}" + (f" ({origin})" if origin else "")
     return replace(job, estimation=replace(job.estimation, stored=stored_estimate.restored(source), origin=words))
+
+
+def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> None:
+    """Run a job, and apply it to its plate."""
+    completed = lazy_import.load(".work.run").run(job)
+    lazy_import.load(".scene.apply").apply(context, completed)
+    datablock = plates.datablock_of_plate(job.plate)
+    datablock.camera_response_settings.apply = source.camera_response_settings.apply
+    if completed.is_applied:
+        remember_applied(datablock)
 
 
 def _what_was_done(source: plates.Datablock) -> str:
