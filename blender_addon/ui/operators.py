@@ -69,7 +69,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if self._run.task.is_running:
+        if self._run.task.is_alive():
             self._run.show()
             return {"PASS_THROUGH"}
         self._run.end()
@@ -80,7 +80,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """Cancel the job, because Blender closes or opens another file."""
-        self._run.task.cancel()
+        self._run.task.cancelled.set()
         self._run.end()
 
     def _gather_job(self, context: bpy.types.Context) -> "Job":

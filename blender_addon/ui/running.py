@@ -43,14 +43,14 @@ class Run:
     @property
     def text(self) -> str:
         """How far the job is, in words; without a number until there is one, as 0 % would look stuck."""
-        if self.task.is_cancelled:
+        if self.task.cancelled.is_set():
             return "Canceling"
         percent = self.task.percent
         return f"{self.name}: {percent} %" if percent else f"{self._doing} {self.name} ..."
 
     def cancel(self) -> None:
         """Ask the job to stop, and show that it was asked."""
-        self.task.cancel()
+        self.task.cancelled.set()
         self._pause = 0.0
         self.show()
 
@@ -59,7 +59,7 @@ class Run:
         since = time.monotonic() - self._shown_at
         if self._pause is None:  # the call after a display comes late by the time that drawing took
             self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
-        text = self.text if self.task.is_cancelled else f"Camera response: {self.text}  |  Esc to cancel"
+        text = self.text if self.task.cancelled.is_set() else f"Camera response: {self.text}  |  Esc to cancel"
         if text == self._shown or since < self._pause:
             return
         self._shown, self._shown_at, self._pause = text, time.monotonic(), None
@@ -103,7 +103,7 @@ def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *
 def stop() -> None:
     """Cancel the run that is under way, if any, and remove its display without waiting for its end."""
     if _current is not None:
-        _current.task.cancel()
+        _current.task.cancelled.set()
         _current.end()
 
 

@@ -13,19 +13,17 @@ from crfnet.plates.primaries import plate_primaries
 from crfnet_core import ResponseEstimate
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
+from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress, show_progress
 
 from . import writers
-from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
+from .encoding_check import check_is_encoded, is_said_encoded
 from .errors import AddonError, CancelledError
 from .frame_files import frame_reader, frames_of, primaries_of, sample
 from .job import Anchor, ApplyMode, Job
 from .wording import is_loaded
-
-#: The modes in which Blender shows the frames of a sequence, and needs their numbers.
-_SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ def _completed(
     if not completed.is_applied:
         return completed
     frames: tuple[int, ...] = ()
-    if job.plate.has_frames and job.output.mode in _SHOWING_FRAMES:
+    if job.plate.has_frames and job.output.mode is not ApplyMode.EXPORT:  # Blender shows them
         frames = tuple(range(1, job.plate.frame_count + 1)) or sequence().numbers
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
@@ -129,9 +127,9 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         frames = read(sample(sequence))
         if not is_forced:
             with suppress(OSError):  # reported where the file is read
-                file_kind(frames.paths[0])  # first, as Estimate Anyway overrules no format
+                file_kind(frames.paths[0])  # refuses formats, which Estimate Anyway does not overrule
             check_is_encoded(job.plate, frames.paths[0], job.config)
         has_metadata = options.analysis.use_metadata and job.plate.has_metadata
-        is_overruled = has_metadata and is_forced and is_tagged(frames.paths)
+        is_overruled = has_metadata and is_forced and any(read_metadata(path).color.transfer for path in frames.paths)
         analysis = replace(options.analysis, use_metadata=has_metadata and not is_overruled)
         return estimate_files([frames], replace(options, analysis=analysis), progress=progress)

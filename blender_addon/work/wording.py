@@ -35,9 +35,6 @@ SHORT_WARNINGS = {
     "narrow_range": "no window covers the range of brightness",
 }
 
-#: Each verdict as a sentence about the response, for one-line reports.
-_SENTENCES = {"usable": "the response is usable", "do not trust": "the response is not to be trusted"}
-
 
 class PanelText(NamedTuple):
     """The panel's sentences about an estimate: paragraphs are separated by line breaks."""
@@ -96,8 +93,9 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     if estimate.warnings:
         more = f", and {len(estimate.warnings) - 1} more" if estimate.warnings[1:] else ""
         warning = f" (warning: {_first_warning(estimate)}{more})"
-    sentence = _SENTENCES[estimate.verdict.value]
-    if says_too_little(estimate.verdict.value, [each.code for each in estimate.warnings]):
+    verdict = estimate.verdict.value
+    sentence = f"the response is {'not to be trusted' if verdict == 'do not trust' else verdict}"
+    if says_too_little(verdict, [each.code for each in estimate.warnings]):
         sentence = "the response is little more than the mean of cameras"
     return f"{name}: {sentence}{warning}; {done}"
 
