@@ -113,10 +113,7 @@ def shipped_files() -> list[Path]:
 
 
 def platform_manifest(text: str, wanted: Zip) -> str:
-    """Return the text of the manifest with only one platform and its wheels.
-
-    Blender's own `--split-platforms` adds a table [build.generated] instead, which nothing but its installer reads.
-    """
+    """Return the text of the manifest with only one platform and its wheels."""
     tags = re.compile(rf".*-(any|({'|'.join(wanted.pythons)})-\w+-{wanted.tag})\.whl")
     wheels = list(filter(tags.fullmatch, tomllib.loads(text)["wheels"]))
     for key, values in (("platforms", [wanted.platform]), ("wheels", wheels)):
@@ -137,6 +134,7 @@ def build_own_wheel(version: str, cache: Path) -> Path:
     fetch_wheel(next(name for name in _expected_hashes() if name.startswith("setuptools-")), cache)
     with tempfile.TemporaryDirectory() as folder:
         source, out = Path(folder, "source"), Path(folder, "out")
+        source.mkdir()
         for name in SOURCES:
             _copy(ROOT / name, source / name)
         build = f"{version}+{_digest(source)}"
@@ -283,11 +281,10 @@ def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] |
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy a file, or a folder without the bytecode that Python leaves in it."""
+    """Copy a file, or a folder without the bytecode that Python leaves in it, into a folder that is there."""
     if source.is_dir():
         shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
     else:
-        target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, target)
 
 

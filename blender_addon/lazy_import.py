@@ -20,10 +20,7 @@ _IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 
 def load(module: str) -> ModuleType:
-    """Return a module that imports the estimator: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not.
-
-    Raise AddonError, with the remedy, if a library cannot be imported.
-    """
+    """Return a module: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not; else raise an AddonError."""
     _expose_blenders_own()
     try:
         return importlib.import_module(module, __package__)

@@ -156,11 +156,11 @@ class CRF_OT_cancel_run(bpy.types.Operator):
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Return whether there is a run."""
-        return running.current() is not None
+        return running.current is not None
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """Ask the run to stop; the operator that started it reports when it has."""
-        if run := running.current():
+        if run := running.current:
             run.cancel()
         return {"FINISHED"}
 

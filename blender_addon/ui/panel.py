@@ -36,7 +36,7 @@ class ResponsePanel(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
         layout, datablock = self.layout, plates.active_datablock(context)
-        if run := running.current():
+        if run := running.current:
             row = layout.row(align=True)
             row.progress(factor=run.task.percent / 100, text=run.text)
             row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
@@ -108,7 +108,7 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
     """Draw the ways to apply the estimate, the button that does it, and the settings of the chosen way."""
     settings, letters = datablock.camera_response_settings, letters_of(context)
     row = layout.row(align=True)
-    row.enabled = running.current() is None
+    row.enabled = running.current is None
     row.prop(settings, "apply", expand=True)
     is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
     text, icon, state, state_icon = ("Apply", "CHECKMARK", "", "NONE")
@@ -189,7 +189,7 @@ def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, setti
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     """Return a column of properties with their names at the left, gray while a run goes by earlier settings."""
     column = layout.column()
-    column.enabled = running.current() is None
+    column.enabled = running.current is None
     column.use_property_split = True
     column.use_property_decorate = False
     return column

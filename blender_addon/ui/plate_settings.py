@@ -2,7 +2,6 @@
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
 from collections.abc import Callable
-from contextlib import suppress
 
 import bpy
 
@@ -56,10 +55,10 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     """Return the stored cameras that hold a text, the plate's model first; none without the wheels."""
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
-    cameras: list[tuple[str, str]] = []
-    with suppress(AddonError):
-        cameras = lazy_import.load("crfnet_core.library").listed_cameras(text, models)
-    return cameras
+    try:
+        return lazy_import.load("crfnet_core.library").listed_cameras(text, models)
+    except AddonError:
+        return []
 
 
 def _expose(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:

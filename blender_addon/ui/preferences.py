@@ -59,11 +59,8 @@ def preferences() -> CRF_AddonPreferences:
 
 
 def absolute(path: str) -> Path | None:
-    """Return the path of a file or folder chosen in the interface, or None for an empty choice.
-
-    Blender writes ``//`` for the folder of the .blend file; raise AddonError if there is none yet.
-    """
-    if path.startswith("//") and not bpy.data.filepath:
+    """Return the path of a file or folder chosen in the interface, or None for an empty choice."""
+    if path.startswith("//") and not bpy.data.filepath:  # Blender's sign for the folder of the .blend file
         raise AddonError(f"{path} is relative to the .blend file: save that first, or choose another path")
     return Path(bpy.path.abspath(path)) if path else None
 

@@ -22,7 +22,8 @@ TICK = 0.05
 #: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
 REDRAW, LONGEST, DRAWING_SHARE = 1.0, 5.0, 0.1
 
-_current: Run | None = None
+#: The run that is under way, or None.
+current: Run | None = None
 
 
 class Run:
@@ -69,42 +70,37 @@ class Run:
 
     def end(self) -> None:
         """Remove the timer and the display, once; then no run is current."""
-        global _current
-        if _current is not self:
+        global current
+        if current is not self:
             return
-        _current = None
+        current = None
         self._manager.event_timer_remove(self._timer)
         self._manager.progress_end()
         set_status(self._workspace, None)
         redraw_editors(self._manager)
 
 
-def current() -> Run | None:
-    """Return the run that is under way, or None."""
-    return _current
-
-
 def why_busy() -> str:
     """Return that a run is under way, for the tooltip of an operator that has to wait; empty if there is none."""
-    if _current is None:
+    if current is None:
         return ""
-    return f"The camera response of {_current.name} is running: wait for its end, or cancel it"
+    return f"The camera response of {current.name} is running: wait for its end, or cancel it"
 
 
 def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *, doing: str = "Estimating") -> Run:
     """Return a run that has just been started; there must be no other."""
-    global _current
-    _current = Run(context, name, function, doing)
-    _current.show()
-    _current.task.start()
-    return _current
+    global current
+    current = Run(context, name, function, doing)
+    current.show()
+    current.task.start()
+    return current
 
 
 def stop() -> None:
     """Cancel the run that is under way, if any, and remove its display without waiting for its end."""
-    if _current is not None:
-        _current.task.cancelled.set()
-        _current.end()
+    if current is not None:
+        current.task.cancelled.set()
+        current.end()
 
 
 def set_status(workspace: bpy.types.WorkSpace, text: str | None) -> None:

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.pipeline import FileEstimate, anchored_exposure, estimate_files, response_lut
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.primaries import plate_primaries
@@ -100,19 +100,15 @@ def _completed(
     if not completed.is_applied:
         return completed
     frames: tuple[int, ...] = ()
-    if job.plate.has_frames and job.output.mode is not ApplyMode.EXPORT:  # Blender shows them
+    if (job.plate.numbered or job.plate.frame_count) and job.output.mode is not ApplyMode.EXPORT:  # Blender shows them
         frames = tuple(range(1, job.plate.frame_count + 1)) or sequence().numbers
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
-        files = writers.write(job, _lut(estimate), stops, sequence, progress, primaries=estimated.primaries)
+        origin = (f"Inverse response, {estimate.model}",)
+        is_estimated = not is_loaded(estimate.uncertainty)
+        lut = response_lut(estimate) if is_estimated else inverse_response_lut(estimate.curve, comments=origin)
+        files = writers.write(job, lut, stops, sequence, progress, primaries=estimated.primaries)
     return replace(completed, frames=frames, files=files)
-
-
-def _lut(estimate: ResponseEstimate) -> Lut1D:
-    """Return the inverse response as a LUT that names the origin of the response."""
-    if is_loaded(estimate.uncertainty):
-        return inverse_response_lut(estimate.curve, comments=(f"Inverse response, {estimate.model}",))
-    return response_lut(estimate)
 
 
 def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> FileEstimate:

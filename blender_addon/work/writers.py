@@ -104,7 +104,7 @@ def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress:
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=job.plate.alpha_mode)
     with frame_reader(job.plate) as read:
         deliver(plan, light, [read(frames)], progress=progress)
-    return Baked(targets, job.plate.is_sequence)
+    return Baked(targets, is_sequence=job.plate.numbered is not None)
 
 
 def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
