@@ -131,13 +131,15 @@ def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:
     """Return where the nodes of an applied plate in the compositor show it, or how they come to; empty in a shader."""
     groups = [node for node in links.groups_of(datablock, context.scene) if node.bl_idname == "CompositorNodeGroup"]
     behind = [node for group in groups for node in links.nodes_behind(group)]
+    if not groups:
+        return ""
     if compositor.is_switched_off(context.scene):
         return "The compositor is switched off: tick Use Nodes."
     if any(compositor.is_output(node, context.scene) for node in behind):
         return "It is in the compositor: F12 renders it."
     if any(node.type == "VIEWER" for node in behind):
         return "A Viewer in the compositor shows it; the render does not. Link it to what goes to the output."
-    return "Its node group in the compositor leads nowhere: link it on." if groups else ""
+    return "Its node group in the compositor leads nowhere: link it on."
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:

@@ -81,6 +81,9 @@ def test_the_panel_says_where_an_applied_plate_is_seen(image, tree, plate_file, 
     (viewer,) = (link for link in tree.links if link.to_node.type == "VIEWER" and link.from_node in groups(tree))
     tree.links.remove(viewer)
     assert place_of(other, in_editor) == "Its node group in the compositor leads nowhere: link it on."
+    if bpy.app.version >= (5, 0, 0):
+        bpy.context.scene.compositing_node_group = None
+        assert "the render does not" in place_of(image, in_editor)
 
 
 @pytest.mark.parametrize("choices", [{}, {"compose": True}])

@@ -109,7 +109,8 @@ def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
 
 def is_output(node: bpy.types.Node, scene: bpy.types.Scene) -> bool:
     """Return whether a node is the output of a scene's compositor."""
-    return node.type == "COMPOSITE" or (IS_BLENDER_5 and node == output_of(scene.compositing_node_group))
+    tree = scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+    return tree is not None and node == output_of(tree)
 
 
 def is_switched_off(scene: bpy.types.Scene) -> bool:
