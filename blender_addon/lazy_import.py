@@ -41,10 +41,7 @@ def missing() -> str:
 
 
 def _of_another_build() -> str:
-    """Return, in one line, that the estimator is not the one of this zip; an empty text if it is, or for the sources.
-
-    Blender replaces the wheels of an add-on when the next session starts.
-    """
+    """Return, in one line, that Blender will load the estimator of this zip at its next start; else an empty text."""
     manifest = tomllib.loads(Path(__file__).with_name("blender_manifest.toml").read_text(encoding="utf-8"))
     (wheel,) = (name for name in manifest["wheels"] if "/crfnet-" in name)
     expected, installed = wheel.split("-")[1], importlib.metadata.version("crfnet")

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
 
 import OpenImageIO as oiio
 
@@ -24,9 +23,6 @@ from crfnet_core.types import Uint8Array
 
 from .errors import AddonError
 from .job import Plate
-
-#: Returns frames as files that can be read; a temporary file is there until the next call.
-FrameReader: TypeAlias = Callable[[FrameSequence], FrameSequence]
 
 
 @dataclass(frozen=True)
@@ -99,8 +95,8 @@ def sample(sequence: FrameSequence) -> FrameSequence:
 
 
 @contextmanager
-def frame_reader(plate: Plate) -> Iterator[FrameReader]:
-    """Yield a function that returns frames of a plate as files; temporary files are removed at the end.
+def frame_reader(plate: Plate) -> Iterator[Callable[[FrameSequence], FrameSequence]]:
+    """Yield a function that returns frames of a plate as files; temporary ones are there until its next call.
 
     Raise AddonError if they cannot be written, or the plate is a movie of more than 8 bits.
     """
