@@ -9,9 +9,19 @@ from typing import TypeAlias
 
 import bpy
 
-from ..plates import Datablock
+from ..plates import Datablock, datablock_of_node
 from .building import GAP, IS_BLENDER_5, WIDTH, activate
-from .links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
+from .links import (
+    LOOK,
+    PLATE,
+    groups_of,
+    holds_group_of,
+    neighbors_behind,
+    nodes_behind,
+    nodes_of,
+    output_of,
+    plates_and_groups,
+)
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
@@ -232,7 +242,7 @@ def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNode
 
 def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show a plate or its code values."""
-    return [node for node in nodes_of(plate) if node.id_data == tree]
+    return [node for node in plates_and_groups(tree) if datablock_of_node(node) == plate]
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:
