@@ -30,7 +30,7 @@ def _registered() -> tuple[ModuleType, ...]:
     """Return the modules with something to register, in order: the settings use the preferences."""
     from .ui import camera_response, estimate_box, handlers, operators, panel, plate_settings, preferences
     from .ui.image_editor import image_tools
-    from .ui.more import add_look, load_lut, other_plates, standard_view
+    from .ui.more import load_lut, looks, other_plates
 
-    tools = (operators, image_tools, add_look, load_lut, other_plates, standard_view)
+    tools = (operators, image_tools, looks, load_lut, other_plates)
     return (preferences, plate_settings, camera_response, *tools, estimate_box, panel, handlers)

@@ -2,11 +2,9 @@
 """Build the Blender extension, one zip per platform and one for the Blenders of Linux distributions: `make addon`.
 
 The folder of the zips is a repository of extensions, from which Blender installs and updates: it has an `index.json`.
-
-Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so
-the next build needs no network. The same sources give the same bytes: the members of a zip are sorted by name,
-uncompressed, and all of one date; the wheel of `crfnet_core` and `crfnet` is built by the setuptools of wheels.sha256,
-from a folder that holds nothing else.
+Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded once and kept. The same
+sources give the same bytes: the members of a zip are sorted by name, uncompressed, and all of one date; the wheel of
+`crfnet_core` and `crfnet` is built by the setuptools of wheels.sha256, from a folder that holds nothing else.
 """
 
 import argparse
@@ -84,9 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> dict[str, Path]:
-    """Write zips and our own wheel, each with its list of components, and the index; return the paths of the zips.
-
-    `names` are keys of `ZIPS`, `out` is the folder for the zips, and `cache` keeps the downloads.
+    """Write zips, by keys of `ZIPS`, our own wheel, their lists of components and the index; return the zips' paths.
 
     Raise BuildError if a wheel cannot be downloaded or has another SHA-256, or the version numbers disagree.
     """
@@ -117,10 +113,7 @@ def shipped_files() -> list[Path]:
 
 
 def platform_manifest(text: str, wanted: Zip) -> str:
-    """Return the text of the manifest with only one platform and its wheels.
-
-    Blender's own `--split-platforms` adds a table [build.generated] instead, which nothing but its installer reads.
-    """
+    """Return the text of the manifest with only one platform and its wheels."""
     tags = re.compile(rf".*-(any|({'|'.join(wanted.pythons)})-\w+-{wanted.tag})\.whl")
     wheels = list(filter(tags.fullmatch, tomllib.loads(text)["wheels"]))
     for key, values in (("platforms", [wanted.platform]), ("wheels", wheels)):
@@ -136,13 +129,12 @@ def build_own_wheel(version: str, cache: Path) -> Path:
 
     Its version, and the add-on's, end in a hash of all sources, such as 0.1.0+h1f3a5b7c: Blender keeps an installed
     wheel if another of the same name and version comes with a newer zip, and offers no update to the same version.
-
-    The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
-    and OpenColorIO, and the add-on does not import what only the command needs (tqdm, matplotlib).
+    Blender ignores the dependencies of the `crfnet` command, which the wheel declares.
     """
     fetch_wheel(next(name for name in _expected_hashes() if name.startswith("setuptools-")), cache)
     with tempfile.TemporaryDirectory() as folder:
         source, out = Path(folder, "source"), Path(folder, "out")
+        source.mkdir()
         for name in SOURCES:
             _copy(ROOT / name, source / name)
         build = f"{version}+{_digest(source)}"
@@ -194,7 +186,7 @@ def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
 
 def write_sbom(path: Path, wheels: Sequence[Path]) -> None:
     """Write the CycloneDX list of a zip and the wheels in it, or of a wheel, next to it: `NAME.cdx.json`."""
-    main = {"type": "application", "name": path.name, "hashes": [{"alg": "SHA-256", "content": _sha256(path)}]}
+    main = {"type": "application", "name": path.name, "hashes": _hashes(path)}
     document = {
         "bomFormat": "CycloneDX",
         "specVersion": "1.5",
@@ -238,8 +230,13 @@ def _component(wheel: Path) -> dict[str, object]:
     name, version = wheel.name.split("-")[:2]
     project = name.replace("_", "-").lower()
     purl = f"pkg:pypi/{project}@{quote(version)}?file_name={quote(wheel.name)}"
-    hashes = [{"alg": "SHA-256", "content": _sha256(wheel)}]
-    return {"type": "library", "name": project, "version": version, "purl": purl, "bom-ref": purl, "hashes": hashes}
+    names = {"type": "library", "name": project, "version": version, "purl": purl, "bom-ref": purl}
+    return {**names, "hashes": _hashes(wheel)}
+
+
+def _hashes(path: Path) -> list[dict[str, str]]:
+    """Return the entry of a component with the SHA-256 of its file."""
+    return [{"alg": "SHA-256", "content": _sha256(path)}]
 
 
 def _expected_hashes() -> dict[str, str]:
@@ -284,11 +281,10 @@ def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] |
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy a file, or a folder without the bytecode that Python leaves in it."""
+    """Copy a file, or a folder without the bytecode that Python leaves in it, into a folder that is there."""
     if source.is_dir():
         shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
     else:
-        target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, target)
 
 

@@ -23,10 +23,7 @@ _IMPORTED = "version_imported_by_the_addon"
 
 
 def load(module: str) -> ModuleType:
-    """Return a module that imports the estimator: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not.
-
-    Raise AddonError, with the remedy, if a library cannot be imported.
-    """
+    """Return a module: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not; else raise an AddonError."""
     _expose_blenders_own()
     try:
         imported = importlib.import_module(module, __package__)
@@ -53,7 +50,7 @@ def missing() -> str:
 def _missing_library() -> str:
     """Return, in one line, which library is missing or of another build, and what to do; an empty text if none is.
 
-    It looks for the libraries once and imports none of them, so it does not notice one that is damaged.
+    It imports none of them, so it does not notice one that is damaged.
     """
     _expose_blenders_own()
     absent = [name for name in (*_IN_WHEELS, *_IN_BLENDER) if importlib.util.find_spec(name) is None]
@@ -61,7 +58,7 @@ def _missing_library() -> str:
 
 
 def _of_another_build() -> str:
-    """Return, in one line, that the estimator is not the one of this zip; an empty text if it is, or for the sources.
+    """Return, in one line, that another build of the estimator is loaded than this zip's; else an empty text.
 
     Blender replaces the wheels of an add-on at an update or when the next session starts, but keeps what is imported.
     """

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The stored response of an image or clip, as scripts read it: `image.camera_response`.
 
-It holds nothing itself: getters read the custom property of the same name, which Blender 4.5 takes for the storage of
-this group, and later versions keep apart from it.
+Its getters read the custom property of the same name, which Blender 4.5 takes for the storage of this group.
 """
 
 from collections.abc import Callable
@@ -12,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..scene import stored_estimate
-from .plate_settings import is_applied
+from .plate_settings import is_applied, plate_property_factory
 
 if TYPE_CHECKING:
     from crfnet_core.types import Float64Array
@@ -26,9 +25,7 @@ def _getter(read: Callable[[bpy.types.ID], Any], otherwise: Any) -> Callable[[bp
 class CRF_CameraResponse(bpy.types.PropertyGroup):
     """The response of an image or clip, read-only; without a response it is empty."""
 
-    is_stored: bpy.props.BoolProperty(
-        description="Whether the image or clip has a response", get=_getter(lambda _: True, False)
-    )
+    is_stored: bpy.props.BoolProperty(description="Whether there is a response", get=_getter(lambda _: True, False))
     verdict: bpy.props.StringProperty(
         description='"usable" or "do not trust"; empty for a response from a LUT',
         get=_getter(lambda plate: stored_estimate.verdict(plate) if stored_estimate.has_verdict(plate) else "", ""),
@@ -64,18 +61,4 @@ class CRF_CameraResponse(bpy.types.PropertyGroup):
         return stored_estimate.curve_and_band(self.id_data)[0] if self.is_stored else np.empty(0)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_CameraResponse,))
-
-
-def register() -> None:
-    """Let images and clips show their response to scripts."""
-    _register_classes()
-    for kind in (bpy.types.Image, bpy.types.MovieClip):
-        kind.camera_response = bpy.props.PointerProperty(type=CRF_CameraResponse)
-
-
-def unregister() -> None:
-    """Remove the property; the responses stay."""
-    for kind in (bpy.types.Image, bpy.types.MovieClip):
-        del kind.camera_response
-    _unregister_classes()
+register, unregister = plate_property_factory("camera_response", CRF_CameraResponse)

@@ -18,28 +18,22 @@ from .image_editor.image_tools import CRF_OT_compare
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
 
-#: Each verdict in a word or two, with its icon and its meaning.
+#: Each verdict in a word or two, with its icon and its meaning; and the same for other responses.
 VERDICTS = {
     "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
     stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
+    "mean": ("Mean of cameras", "QUESTION", "Usable only as that: the picture shows too little of its response."),
+    "loaded": ("Loaded", "FILE", ""),
+    "copied": ("Copied", "DUPLICATE", "It is right only if the same camera took both, with the same settings."),
 }
-
-#: The same for a picture that hardly distinguishes responses.
-MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the picture shows too little of its response.")
-
-#: The same for a response from a LUT file, and from another plate.
-LOADED_WORDS = ("Loaded", "FILE", "")
-COPIED_WORDS = ("Copied", "DUPLICATE", "It is right only if the same camera took both, with the same settings.")
 
 #: The axes and colors of the picture of the curve.
 CAPTION = "Code value (a line every 64) by stops below white (every 2). Blue: 90 % band. Dashed: gamma 2.2."
 
-#: The mean width of a letter of the interface, the borders of the panel and a box, and the width of an icon: pixels at
-#: a scale of 1.
+#: The mean width of a letter, the borders of the panel and a box, and the width of an icon: pixels at a scale of 1.
 _LETTER, _BORDER, _ICON = 6, 60, 20
 
-#: The side of the picture of the curve, and the least and the largest side of the one in the details, in units of the
-#: interface, which are as wide as an icon.
+#: The side of the picture of the curve, and the least and the largest side of the one in the details, in icons.
 _SMALL, _LEAST, _LARGEST = 6, 9, 18
 
 #: The distance of lines that belong together, relative to the distance of buttons.
@@ -73,7 +67,10 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
         column.label(text=f"Expected error {stops:.2f} stop")
     box.template_icon(icon_value=curve_icon(datablock), scale=_SMALL)
     if context.space_data.type == "IMAGE_EDITOR":
-        _draw_comparison(box, context.space_data)
+        is_after = plates.compared_plate(context.space_data.image) is not None
+        row = box.row(align=True)
+        row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
+        row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
 
 
 def draw_notices(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -104,11 +101,11 @@ def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
     """Return the verdict in a word or two, its icon, and its meaning or an empty text."""
     verdict = stored_estimate.verdict(datablock)
     if not stored_estimate.has_verdict(datablock):
-        return LOADED_WORDS
+        return VERDICTS["loaded"]
     if stored_estimate.origin(datablock) and verdict != stored_estimate.DO_NOT_TRUST:
-        return COPIED_WORDS
+        return VERDICTS["copied"]
     if says_too_little(verdict, stored_estimate.warning_codes(datablock)):
-        return MEAN_OF_CAMERAS
+        return VERDICTS["mean"]
     word, icon, meaning = VERDICTS[verdict]
     kind = stored_estimate.recognized_as(datablock)
     return f"{word}: {kind}" if kind else word, icon, meaning
@@ -152,14 +149,6 @@ def curve_icon(datablock: plates.Datablock) -> int:
         pixels = curve_picture.draw_response(*stored_estimate.curve_and_band(datablock))
         preview.image_pixels_float.foreach_set(pixels.ravel())
     return _previews[key].icon_id
-
-
-def _draw_comparison(layout: bpy.types.UILayout, space: bpy.types.SpaceImageEditor) -> None:
-    """Draw the switch between the plate and the linear plate."""
-    is_after = plates.compared_plate(space.image) is not None
-    row = layout.row(align=True)
-    row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
-    row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
 
 
 def register() -> None:

@@ -22,13 +22,12 @@ from .preferences import absolute, preferences
 
 
 def gather_job(
-    datablock: plates.Datablock, *, is_estimated: bool, despite_verdict: bool = False, arguments: Mapping[str, Any]
+    datablock: plates.Datablock, arguments: Mapping[str, Any], *, is_estimated: bool, despite_verdict: bool = False
 ) -> Job:
     """Return the job of a plate: to apply its stored estimate (`is_estimated`), or to estimate its response anew.
 
-    `arguments` of the operator take precedence over the settings of the plate. Raise AddonError if no response can be
-    estimated from the plate, or its file is not found; ConfigError if the config lacks a color space that the nodes
-    need.
+    `arguments` of the operator take precedence over the settings of the plate. Raise AddonError or ConfigError if no
+    response can be estimated from the plate, its file is not found, or the config lacks a color space for the nodes.
     """
     settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}

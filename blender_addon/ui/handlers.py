@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Handlers for opening, importing from and saving a .blend file, and for undo.
 
-Before a file is saved and around undo, editors that show a linear plate for comparison go back to the plate, so that it
-is never saved. The code values of plates that were packed are packed, too.
+Before a file is saved and around undo, editors go back from the linear plate to the plate: it is never saved.
 """
 
 from __future__ import annotations

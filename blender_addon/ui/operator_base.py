@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The base of operators: when they can run, the plate that a script names, and how they report a problem."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any
 
 import bpy
 
@@ -22,38 +21,36 @@ class ChosenPlate:
         name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
     clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
+        name="Movie Clip", description="Name of the clip; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
 
-    if TYPE_CHECKING:  # of bpy.types.Operator
-        poll_message_set: ClassVar[Callable[[str], None]]
+    #: Whether the plate must have a response.
+    needs_estimate = False
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether it can run on the editor's plate now, and tell why if not; a script names its plate."""
-        is_in_editor = context.area is not None and context.area.type in plates.EDITORS  # not where a script runs
-        return is_allowed(cls, running.why_busy() or (cls.why_not(context) if is_in_editor else ""))
+        why_not = running.why_busy()
+        if context.area is not None and context.area.type in plates.EDITORS:  # not where a script runs
+            why_not = why_not or cls.why_not(context)
+        return is_allowed(cls, why_not)
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:
         """Return why the operator cannot run on the plate of an editor, or an empty text."""
+        if cls.needs_estimate:
+            return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
         return plates.obstacle_in(context)
 
     def chosen_plate(self, context: bpy.types.Context) -> plates.Datablock:
-        """Return the image or clip; an AddonError if there is none."""
-        return plates.chosen_datablock(context, self.image, self.clip)
-
-    def estimated_plate(self, context: bpy.types.Context) -> plates.Datablock:
-        """Return the image or clip, which must have a response; else an AddonError."""
-        datablock = self.chosen_plate(context)
-        if not stored_estimate.is_stored(datablock):
+        """Return the image or clip; an AddonError if there is none, or it lacks a response that it needs."""
+        datablock = plates.chosen_datablock(context, self.image, self.clip)
+        if self.needs_estimate and not stored_estimate.is_stored(datablock):
             raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
         return datablock
 
 
-def is_allowed(operator: type[bpy.types.Operator] | type[ChosenPlate], why_not: str) -> bool:
+def is_allowed(operator: Any, why_not: str) -> bool:
     """Return whether an operator can run; its tooltip gives the reason if not."""
     if why_not:
         operator.poll_message_set(why_not)

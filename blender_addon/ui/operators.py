@@ -15,7 +15,7 @@ from ..work.errors import AddonError, expected_errors
 from ..work.wording import report_line
 from . import running
 from .image_editor import comparison
-from .operator_base import NO_ESTIMATE, ChosenPlate, failed
+from .operator_base import ChosenPlate, failed
 from .plate_settings import CHOICES, PlateChoices, remember_applied
 from .preferences import APPLY_MODES
 
@@ -30,17 +30,13 @@ WITHHELD = "not applied; to use it all the same, press Apply Anyway (anyway=True
 class PlateOperator(ChosenPlate, PlateChoices):
     """The base of "Estimate Camera Response" and "Apply Camera Response".
 
-    A script, and Blender in the background, calls `execute`, which returns when the job is done. The interface calls
-    `invoke`, which starts the job in another thread, and then `modal` at every event. Either way, nothing in Blender's
-    data changes before the job has succeeded, so an error or Esc leaves everything as it was.
+    A script calls `execute`; the interface calls `invoke`, and then `modal` at every event. Either way, nothing in
+    Blender's data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
     anyway: bpy.props.BoolProperty(
         name="Anyway", description="Apply the response even if it is not to be trusted", options={"SKIP_SAVE"}
     )
-
-    #: Whether the operator uses the stored estimate instead of a new one.
-    is_estimated = False
 
     if TYPE_CHECKING:  # of bpy.types.Operator
         properties: Any
@@ -62,7 +58,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
         except expected_errors() as problem:
             return failed(self, problem)
         context.window_manager.modal_handler_add(self)
-        doing = "Applying" if self.is_estimated else "Estimating"
+        doing = "Applying" if self.needs_estimate else "Estimating"
         self._run = running.start(context, job.plate.name, lambda progress: run(job, progress), doing=doing)
         return {"RUNNING_MODAL"}
 
@@ -73,7 +69,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if self._run.task.is_running:
+        if self._run.task.is_alive():
             self._run.show()
             return {"PASS_THROUGH"}
         self._run.end()
@@ -84,25 +80,23 @@ class PlateOperator(ChosenPlate, PlateChoices):
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """Cancel the job, because Blender closes or opens another file."""
-        self._run.task.cancel()
+        self._run.task.cancelled.set()
         self._run.end()
 
     def _gather_job(self, context: bpy.types.Context) -> "Job":
         """Return the job; arguments of the call take precedence over the settings of the plate."""
-        datablock = self.estimated_plate(context) if self.is_estimated else self.chosen_plate(context)
-        is_doubted = self.is_estimated and stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
+        datablock = self.chosen_plate(context)
+        is_doubted = self.needs_estimate and stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
         if is_doubted and not self.anyway:
             raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
-        if not self.is_estimated:
+        if not self.needs_estimate:
             arguments.setdefault("apply", "ESTIMATE")
-        gather = lazy_import.load(".ui.gather")
-        return gather.gather_job(
-            datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
-        )
+        gather_job = lazy_import.load(".ui.gather").gather_job
+        return gather_job(datablock, arguments, is_estimated=self.needs_estimate, despite_verdict=self.anyway)
 
     def _apply(self, context: bpy.types.Context, completed: "CompletedJob", withheld: str = "WARNING") -> set[str]:
-        """Apply a completed job to the scene, and report what was done; `withheld` is the kind of report if nothing."""
+        """Apply a completed job to the scene, and report what was done; if nothing, as a problem of a kind."""
         with comparison.same_view(context):
             comparison.end_all()
             done = lazy_import.load(".scene.apply").apply(context, completed)
@@ -113,8 +107,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
             failed(self, completed.problem)
             return {"FINISHED"}
         message = report_line(completed.job.plate.name, completed.estimate, WITHHELD if completed.is_withheld else done)
-        kind = withheld if completed.is_withheld else "WARNING" if completed.is_doubtful else "INFO"
-        self.report({kind}, message)
+        self.report({withheld if completed.is_withheld else "WARNING" if completed.is_doubtful else "INFO"}, message)
         return {"FINISHED"}
 
 
@@ -145,13 +138,12 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
 
     apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
 
-    is_estimated = True
+    needs_estimate = True
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:
         """Return that the plate has no estimate, or why this cannot be applied."""
-        datablock = plates.active_datablock(context)
-        return plates.obstacle(datablock) if stored_estimate.is_stored(datablock) else NO_ESTIMATE
+        return super().why_not(context) or plates.obstacle_in(context)
 
 
 class CRF_OT_cancel_run(bpy.types.Operator):
@@ -164,11 +156,11 @@ class CRF_OT_cancel_run(bpy.types.Operator):
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Return whether there is a run."""
-        return running.current() is not None
+        return running.current is not None
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """Ask the run to stop; the operator that started it reports when it has."""
-        if run := running.current():
+        if run := running.current:
             run.cancel()
         return {"FINISHED"}
 

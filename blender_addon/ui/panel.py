@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import bpy
 
 from ..scene import code_values, plates, stored_estimate
@@ -13,10 +11,9 @@ from ..work.job import WITHOUT_FILES
 from . import running
 from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence, CRF_OT_show_plate
-from .more.add_look import CRF_OT_add_look
 from .more.load_lut import CRF_OT_load_lut
+from .more.looks import CRF_OT_add_look, draw_view
 from .more.other_plates import CRF_OT_copy_response
-from .more.standard_view import draw_view
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .plate_settings import is_applied, is_to_be_applied
 
@@ -24,15 +21,12 @@ from .plate_settings import is_applied, is_to_be_applied
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
 
 
-class ResponsePanel:
+class ResponsePanel(bpy.types.Panel):
     """The panel, the same in every editor, in a tab of its own: elsewhere, Blender's panels push it out of sight."""
 
     bl_label = "Camera Response"
     bl_region_type = "UI"
     bl_category = "Response"
-
-    if TYPE_CHECKING:  # of bpy.types.Panel
-        layout: bpy.types.UILayout
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -42,8 +36,10 @@ class ResponsePanel:
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate with the button that applies it, and the rest."""
         layout, datablock = self.layout, plates.active_datablock(context)
-        if run := running.current():
-            _draw_progress(layout, run)
+        if run := running.current:
+            row = layout.row(align=True)
+            row.progress(factor=run.task.percent / 100, text=run.text)
+            row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
         elif obstacle := plates.obstacle_in(context):
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
             if plates.is_tiled(datablock):
@@ -67,19 +63,19 @@ class ResponsePanel:
             _draw_advanced(layout, context, datablock.camera_response_settings)
 
 
-class CRF_PT_image(ResponsePanel, bpy.types.Panel):
+class CRF_PT_image(ResponsePanel):
     """The panel in the Image Editor."""
 
     bl_space_type = "IMAGE_EDITOR"
 
 
-class CRF_PT_clip(ResponsePanel, bpy.types.Panel):
+class CRF_PT_clip(ResponsePanel):
     """The panel in the Movie Clip Editor."""
 
     bl_space_type = "CLIP_EDITOR"
 
 
-class CRF_PT_node(ResponsePanel, bpy.types.Panel):
+class CRF_PT_node(ResponsePanel):
     """The panel in the Compositor and the Shader Editor."""
 
     bl_space_type = "NODE_EDITOR"
@@ -91,13 +87,6 @@ def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         menu.layout.separator()
         menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
-
-
-def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
-    """Draw how far the run is, with a button that cancels it."""
-    row = layout.row(align=True)
-    row.progress(factor=run.task.percent / 100, text=run.text)
-    row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
 
 
 def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -120,7 +109,7 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
     """Draw the ways to apply the estimate, the button that does it, and the settings of the chosen way."""
     settings, letters = datablock.camera_response_settings, letters_of(context)
     row = layout.row(align=True)
-    row.enabled = running.current() is None
+    row.enabled = running.current is None
     row.prop(settings, "apply", expand=True)
     is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
     text, icon, state, state_icon = ("Apply", "CHECKMARK", "", "NONE")
@@ -143,13 +132,15 @@ def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:
     """Return where the nodes of an applied plate in the compositor show it, or how they come to; empty in a shader."""
     groups = [node for node in links.groups_of(datablock, context.scene) if node.bl_idname == "CompositorNodeGroup"]
     behind = [node for group in groups for node in links.nodes_behind(group)]
+    if not groups:
+        return ""
     if compositor.is_switched_off(context.scene):
         return "The compositor is switched off: tick Use Nodes."
     if any(compositor.is_output(node, context.scene) for node in behind):
         return "It is in the compositor: F12 renders it."
     if any(node.type == "VIEWER" for node in behind):
         return "A Viewer in the compositor shows it; the render does not. Link it to what goes to the output."
-    return "Its node group in the compositor leads nowhere: link it on." if groups else ""
+    return "Its node group in the compositor leads nowhere: link it on."
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -201,7 +192,7 @@ def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, setti
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     """Return a column of properties with their names at the left, gray while a run goes by earlier settings."""
     column = layout.column()
-    column.enabled = running.current() is None
+    column.enabled = running.current is None
     column.use_property_split = True
     column.use_property_decorate = False
     return column

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
-from contextlib import suppress
+from collections.abc import Callable
 
 import bpy
 
@@ -12,7 +12,7 @@ from ..scene.nodes.ready_comp import is_plain
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .image_editor import comparison
-from .preferences import APPLY_MODES, preferences
+from .preferences import APPLY_MODES, FOLDER, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
 ANCHORS = (
@@ -47,18 +47,18 @@ MAX_EXPOSURE = 15
 #: The names of the ways to apply a response, by the order of their enumeration.
 _MODES = [item[0] for item in APPLY_MODES]
 
-#: The entry of a stored estimate with the settings that were applied last, and their names.
-APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
+#: The entry of a stored estimate with the settings that were applied last.
+APPLIED = "applied_settings"
 
 
 def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
     """Return the stored cameras that hold a text, the plate's model first; none without the wheels."""
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
-    cameras: list[tuple[str, str]] = []
-    with suppress(AddonError):
-        cameras = lazy_import.load("crfnet_core.library").listed_cameras(text, models)
-    return cameras
+    try:
+        return lazy_import.load("crfnet_core.library").listed_cameras(text, models)
+    except AddonError:
+        return []
 
 
 def _expose(settings: bpy.types.bpy_struct, _: bpy.types.Context) -> None:
@@ -78,9 +78,7 @@ class PlateChoices:
     """The choices for a plate that the panel offers and the operators take as arguments."""
 
     anchor: bpy.props.EnumProperty(
-        name="Anchor",
-        description="Which brightness gets a fixed linear value: a response alone leaves the exposure open",
-        items=ANCHORS,
+        name="Anchor", description="Which brightness gets a fixed linear value, which no response gives", items=ANCHORS
     )
     gray: bpy.props.FloatProperty(
         name="Gray",
@@ -105,13 +103,10 @@ class PlateChoices:
     folder: bpy.props.StringProperty(
         name="Folder",
         description="Folder for new files. Empty: the folder of the preferences, of the plate or of the .blend file",
-        subtype="DIR_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        **FOLDER,
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Samples of the baked EXR files", items=DEPTHS)
-    overwrite: bpy.props.BoolProperty(
-        name="Overwrite", description="Replace files of an earlier run; is asked anew each time"
-    )
+    overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace earlier files; is asked anew each time")
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
         description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear."
@@ -193,7 +188,7 @@ def is_to_be_applied(datablock: bpy.types.ID) -> bool:
 
 def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     """Return the settings that change what is applied."""
-    names = [*APPLIED_SETTINGS]
+    names = ["apply", "anchor", "exposure"]
     names += ["gray"] if settings.anchor == "GRAY" else []
     names += ["depth"] if settings.apply == "BAKE" else []
     names += ["folder"] if settings.apply not in WITHOUT_FILES else []
@@ -203,18 +198,21 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     return chosen
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_PlateSettings,))
+def plate_property_factory(name: str, group: type[bpy.types.PropertyGroup]) -> tuple[Callable[[], None], ...]:
+    """Return functions that add a group of properties to images and clips under a name, and remove it."""
+    kinds = (bpy.types.Image, bpy.types.MovieClip)
+
+    def register() -> None:
+        bpy.utils.register_class(group)
+        for kind in kinds:
+            setattr(kind, name, bpy.props.PointerProperty(type=group))
+
+    def unregister() -> None:
+        for kind in kinds:
+            delattr(kind, name)
+        bpy.utils.unregister_class(group)
+
+    return register, unregister
 
 
-def register() -> None:
-    """Add the settings to images and clips."""
-    _register_classes()
-    for kind in (bpy.types.Image, bpy.types.MovieClip):
-        kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
-
-
-def unregister() -> None:
-    """Remove the settings from images and clips."""
-    for kind in (bpy.types.Image, bpy.types.MovieClip):
-        del kind.camera_response_settings
-    _unregister_classes()
+register, unregister = plate_property_factory("camera_response_settings", CRF_PlateSettings)

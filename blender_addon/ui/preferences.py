@@ -14,12 +14,12 @@ ADDON = __package__.rpartition(".")[0]
 APPLY_MODES = (
     ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor"),
     ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them"),
-    (
-        "EXPORT",
-        "Export",
-        "Write LUT files, and a copy of Blender's OpenColorIO config with a color space for the plate",
-    ),
+    ("EXPORT", "Export", "Write LUTs, and a copy of Blender's OpenColorIO config with a color space for the plate"),
 )
+
+
+#: The properties of a folder that the user chooses.
+FOLDER = {"subtype": "DIR_PATH", "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}}
 
 
 class CRF_AddonPreferences(bpy.types.AddonPreferences):
@@ -30,14 +30,10 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     model: bpy.props.StringProperty(
         name="Model",
         description="Folder of another model, with model.onnx and model.json. Empty: the model in the add-on",
-        subtype="DIR_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        **FOLDER,
     )
     folder: bpy.props.StringProperty(
-        name="Output Folder",
-        description="Folder for baked and exported files. Empty: the plate's own folder",
-        subtype="DIR_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        name="Output Folder", description="Folder for baked and exported files. Empty: the plate's own folder", **FOLDER
     )
     apply_as: bpy.props.EnumProperty(
         name="Apply As",
@@ -63,11 +59,8 @@ def preferences() -> CRF_AddonPreferences:
 
 
 def absolute(path: str) -> Path | None:
-    """Return the path of a file or folder chosen in the interface, or None for an empty choice.
-
-    Blender writes ``//`` for the folder of the .blend file; raise AddonError if there is none yet.
-    """
-    if path.startswith("//") and not bpy.data.filepath:
+    """Return the path of a file or folder chosen in the interface, or None for an empty choice."""
+    if path.startswith("//") and not bpy.data.filepath:  # Blender's sign for the folder of the .blend file
         raise AddonError(f"{path} is relative to the .blend file: save that first, or choose another path")
     return Path(bpy.path.abspath(path)) if path else None
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The one run that is under way: a job in another thread, and how its progress is shown.
 
-Every display makes Blender draw parts of its window, which takes processor time from the job. So the progress is shown
-only if it has changed, at most every `REDRAW` seconds, and more seldom where drawing is slow; whether the job has ended
-is looked at more often.
+Every display makes Blender draw parts of its window, which takes processor time from the job, so there are few.
 """
 
 from __future__ import annotations
@@ -24,14 +22,14 @@ TICK = 0.05
 #: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
 REDRAW, LONGEST, DRAWING_SHARE = 1.0, 5.0, 0.1
 
-_current: Run | None = None
+#: The run that is under way, or None.
+current: Run | None = None
 
 
 class Run:
     """A job in another thread, with its timer and the display of its progress.
 
-    The window of the context gets the timer, its workspace the text in the status bar. `name` is the plate's,
-    `function` the job, see `BackgroundTask`, and `doing` a verb that stands before the plate's name.
+    `name` is the plate's, `function` the job, see `BackgroundTask`, and `doing` a verb that stands before the name.
     """
 
     def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any], doing: str) -> None:
@@ -46,26 +44,23 @@ class Run:
     @property
     def text(self) -> str:
         """How far the job is, in words; without a number until there is one, as 0 % would look stuck."""
-        if self.task.is_cancelled:
+        if self.task.cancelled.is_set():
             return "Canceling"
         percent = self.task.percent
         return f"{self.name}: {percent} %" if percent else f"{self._doing} {self.name} ..."
 
     def cancel(self) -> None:
         """Ask the job to stop, and show that it was asked."""
-        self.task.cancel()
+        self.task.cancelled.set()
         self._pause = 0.0
         self.show()
 
     def show(self) -> None:
-        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now.
-
-        The call after a display comes late by the time that drawing took.
-        """
+        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now."""
         since = time.monotonic() - self._shown_at
-        if self._pause is None:
+        if self._pause is None:  # the call after a display comes late by the time that drawing took
             self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
-        text = self.text if self.task.is_cancelled else f"Camera response: {self.text}  |  Esc to cancel"
+        text = self.text if self.task.cancelled.is_set() else f"Camera response: {self.text}  |  Esc to cancel"
         if text == self._shown or since < self._pause:
             return
         self._shown, self._shown_at, self._pause = text, time.monotonic(), None
@@ -75,50 +70,42 @@ class Run:
 
     def end(self) -> None:
         """Remove the timer and the display, once; then no run is current."""
-        global _current
-        if _current is not self:
+        global current
+        if current is not self:
             return
-        _current = None
+        current = None
         self._manager.event_timer_remove(self._timer)
         self._manager.progress_end()
         set_status(self._workspace, None)
         redraw_editors(self._manager)
 
 
-def current() -> Run | None:
-    """Return the run that is under way, or None."""
-    return _current
-
-
 def why_busy() -> str:
     """Return that a run is under way, for the tooltip of an operator that has to wait; empty if there is none."""
-    if _current is None:
+    if current is None:
         return ""
-    return f"The camera response of {_current.name} is running: wait for its end, or cancel it"
+    return f"The camera response of {current.name} is running: wait for its end, or cancel it"
 
 
 def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *, doing: str = "Estimating") -> Run:
     """Return a run that has just been started; there must be no other."""
-    global _current
-    _current = Run(context, name, function, doing)
-    _current.show()
-    _current.task.start()
-    return _current
+    global current
+    current = Run(context, name, function, doing)
+    current.show()
+    current.task.start()
+    return current
 
 
 def stop() -> None:
     """Cancel the run that is under way, if any, and remove its display without waiting for its end."""
-    if _current is not None:
-        _current.task.cancel()
-        _current.end()
+    if current is not None:
+        current.task.cancelled.set()
+        current.end()
 
 
 def set_status(workspace: bpy.types.WorkSpace, text: str | None) -> None:
-    """Set the text of the status bar in a workspace, which may have been removed meanwhile.
-
-    Blender goes by the workspace of the context, not by the one that the method belongs to.
-    """
-    with suppress(ReferenceError), bpy.context.temp_override(workspace=workspace):
+    """Set the text of the status bar in a workspace, which may have been removed meanwhile."""
+    with suppress(ReferenceError), bpy.context.temp_override(workspace=workspace):  # else it is set in the present one
         workspace.status_text_set(text)
 
 
@@ -126,7 +113,6 @@ def redraw_editors(manager: bpy.types.WindowManager, *, regions: tuple[str, ...]
     """Have the editors that show the panel drawn again in all windows, or only some types of their regions."""
     for window in manager.windows:
         for area in window.screen.areas:
-            if area.type in EDITORS:
-                for region in area.regions:
-                    if not regions or region.type in regions:
-                        region.tag_redraw()
+            for region in area.regions if area.type in EDITORS else ():
+                if not regions or region.type in regions:
+                    region.tag_redraw()

@@ -10,11 +10,9 @@ import numpy as np
 if TYPE_CHECKING:
     from crfnet_core.types import BoolArray, Float32Array, Float64Array
 
-#: Side of the square picture in pixels: twice what the panel shows on a screen of usual resolution.
-SIZE = 512
-
-#: Pixels between the axes and each side of the picture.
-MARGIN = 22
+#: Pixels: the side of the picture, twice what the panel shows on a usual screen; its margins; the axes between them.
+SIZE, MARGIN = 512, 22
+EXTENT = SIZE - 2 * MARGIN - 1
 
 #: Light at the left end of the axis, in stops relative to white, which is at the right end.
 DARKEST = -8
@@ -23,14 +21,8 @@ DARKEST = -8
 STOPS, CODES = (-8, -6, -4, -2, 0), (0, 64, 128, 192, 255)
 
 #: Displayed colors, in [0, 1].
-BACKGROUND = (0.11, 0.11, 0.11)
-GRID = (0.2, 0.2, 0.2)
-BAND = (0.22, 0.36, 0.5)
-GAMMA = (0.6, 0.6, 0.6)
-CURVE = (1.0, 0.72, 0.25)
-
-#: Pixels from one axis to the other, across and up.
-EXTENT = SIZE - 2 * MARGIN - 1
+BACKGROUND, GRID = (0.11, 0.11, 0.11), (0.2, 0.2, 0.2)
+BAND, GAMMA, CURVE = (0.22, 0.36, 0.5), (0.6, 0.6, 0.6), (1.0, 0.72, 0.25)
 
 #: Half the width of a line, and the length of a dash, in pixels.
 _HALF_WIDTH, _DASH = 2.0, 12

@@ -5,12 +5,10 @@ The estimator judges the metadata of their files: `crfnet_core.photograph.metada
 """
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 
 from crfnet.configs.sources import find_config
 from crfnet.errors import ConfigError
-from crfnet_core.photograph.image_io import read_metadata
 
 from .errors import AddonError
 from .job import Job, Plate
@@ -39,16 +37,8 @@ def is_said_encoded(job: Job) -> bool:
 
 
 def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
-    """Return whether untagged OpenEXR files of a plate are taken for encoded.
-
-    They are if the user has given them a color space that is not linear, or has ticked Estimate Anyway.
-    """
+    """Return whether untagged OpenEXR files are encoded: by a color space that is not linear, or Estimate Anyway."""
     return is_forced or not is_log_or_linear(plate.color_space, _encoding(plate.color_space, config))
-
-
-def is_tagged(files: Iterable[Path]) -> bool:
-    """Return whether the estimator refuses one of the files for its metadata; a CRFNetError if one cannot be read."""
-    return any(read_metadata(file).color.transfer for file in files)
 
 
 def is_log_or_linear(color_space: str, encoding: str = "") -> bool:

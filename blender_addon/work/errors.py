@@ -16,9 +16,6 @@ class CancelledError(AddonError):
 
 
 def expected_errors() -> tuple[type[Exception], ...]:
-    """Return the errors whose messages are written for the user.
-
-    The estimator's errors are among them once it has been imported; before that, it cannot have raised any.
-    """
+    """Return the errors whose messages are written for the user, the estimator's among them once it is imported."""
     core = sys.modules.get("crfnet_core.errors")
     return (AddonError,) if core is None else (AddonError, core.CRFNetError)

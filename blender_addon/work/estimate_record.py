@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An estimate as the entries that a .blend file keeps, and back.
 
-The entries are texts, numbers and flat lists of numbers in double precision, because a custom property holds nothing
-else; several texts are joined by line breaks, and nested values are JSON. A change of the entries needs a new
-`scene.stored_estimate.LAYOUT`.
+A custom property holds texts, numbers and flat lists of numbers; several texts are joined by line breaks, and nested
+values are JSON. A change of the entries needs a new `scene.stored_estimate.LAYOUT`.
 """
 
 import dataclasses
@@ -53,8 +52,7 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
 def loaded_estimate(curve: ResponseCurve, model: str) -> ResponseEstimate:
     """Return a response from a LUT file in the place of an estimate; `model` names the file.
 
-    Its errors are NaN, its band has no width, and it has no windows and no families. Its verdict, which is not shown,
-    lets it be applied.
+    Its errors are NaN, and its band has no width. Its verdict, which is not shown, lets it be applied.
     """
     return ResponseEstimate(
         curve=curve,

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
 
 import OpenImageIO as oiio
 
@@ -25,9 +24,6 @@ from crfnet_core.types import Uint8Array
 from .errors import AddonError
 from .job import Plate
 
-#: Returns frames as files that can be read; a temporary file is there until the next call.
-FrameReader: TypeAlias = Callable[[FrameSequence], FrameSequence]
-
 
 @dataclass(frozen=True)
 class PlateFrames(FrameSequence):
@@ -42,10 +38,10 @@ class PlateFrames(FrameSequence):
 
 
 def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -> EncodedFrame:
-    """Return the encoded samples of a frame as `crfnet.plates.frame_files.read_frame` does, but for its alpha.
+    """Return the encoded samples of a frame as `read_frame` does, but for its alpha, which is taken as by Blender.
 
-    Alpha is taken as by Blender, which ignores the file: as coverage by which the samples are multiplied (PREMUL) or
-    not (STRAIGHT); as data (CHANNEL_PACKED); or not at all (NONE), so that the frame has none.
+    It is coverage by which the samples are multiplied (PREMUL) or not (STRAIGHT), data (CHANNEL_PACKED) or nothing
+    (NONE), whatever the file states.
     """
     is_associated = None if alpha_mode == "" else alpha_mode == "PREMUL"
     frame = read_frame(path, is_encoded=is_encoded, is_associated=is_associated)
@@ -72,8 +68,7 @@ def frames_of(plate: Plate) -> FrameSequence:
 def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
     """Return the primaries that a plate is encoded in, by the tags of its first file; Rec.709 without them.
 
-    Movies have none. For `is_encoded` see `encoding_check.is_said_encoded`. Raise CRFNetError if the file cannot be
-    read, AddonError if no temporary file can be written.
+    For `is_encoded` see `encoding_check.is_said_encoded`. Raise CRFNetError or AddonError if the file cannot be read.
     """
     if plate.frame_count:
         return REC709
@@ -100,8 +95,8 @@ def sample(sequence: FrameSequence) -> FrameSequence:
 
 
 @contextmanager
-def frame_reader(plate: Plate) -> Iterator[FrameReader]:
-    """Yield a function that returns frames of a plate as files; temporary files are removed at the end.
+def frame_reader(plate: Plate) -> Iterator[Callable[[FrameSequence], FrameSequence]]:
+    """Yield a function that returns frames of a plate as files; temporary ones are there until its next call.
 
     Raise AddonError if they cannot be written, or the plate is a movie of more than 8 bits.
     """
@@ -155,7 +150,6 @@ def _write_png(path: Path, codes: Uint8Array) -> None:
     header.attribute("oiio:UnassociatedAlpha", 1)
     header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice
     output = oiio.ImageOutput.create(str(path))
-    if output is None:
-        raise AddonError(f"{path}: cannot be written ({oiio.geterror()}); install Blender again")
-    if not (output.open(str(path), header) and output.write_image(codes) and output.close()):
-        raise AddonError(f"{path}: cannot be written ({output.geterror()}); free some space")
+    if not (output and output.open(str(path), header) and output.write_image(codes) and output.close()):
+        problem = output.geterror() if output else oiio.geterror()
+        raise AddonError(f"{path}: cannot be written ({problem}); free some space, or install Blender again")

@@ -67,22 +67,11 @@ class Plate:
     #: tagged with; empty for clips and where Blender does not show the file, whose alpha then counts.
     alpha_mode: str = ""
 
-    @property
-    def is_sequence(self) -> bool:
-        """Whether `file` is the pattern of a sequence."""
-        return self.numbered is not None
-
-    @property
-    def has_frames(self) -> bool:
-        """Whether the plate is a sequence or a movie."""
-        return self.is_sequence or self.frame_count > 0
-
     @classmethod
     def from_file(cls, path: Path, *, is_sequence: bool, datablock_name: str, **fields: Any) -> Plate:
         """Return the plate of a file, or of the sequence that the file belongs to, with further fields.
 
-        A file name without a number belongs to no sequence. If the frame number is the whole file name, the plate has
-        the name of its image or clip.
+        A file name without a number belongs to no sequence; one of digits alone gives its image's or clip's name.
         """
         number = _FRAME_NUMBER.fullmatch(path.stem) if is_sequence else None
         if number is None:

@@ -5,28 +5,25 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from pathlib import Path
 
-from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.pipeline import FileEstimate, anchored_exposure, estimate_files, response_lut
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.primaries import plate_primaries
 from crfnet_core import ResponseEstimate
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
+from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress, show_progress
 
 from . import writers
-from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
+from .encoding_check import check_is_encoded, is_said_encoded
 from .errors import AddonError, CancelledError
 from .frame_files import frame_reader, frames_of, primaries_of, sample
-from .job import Anchor, ApplyMode, Job, Plate
+from .job import Anchor, ApplyMode, Job
 from .wording import is_loaded
-
-#: The modes in which Blender shows the frames of a sequence, and needs their numbers.
-_SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +60,16 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     """Return a completed job; `progress` is called with (done, total) after every step, and its exception ends the job.
 
     Raise CRFNetError or AddonError if the plate, the model or a folder cannot be used. An error while a new estimate is
-    being applied becomes the `problem` of the completed job, so that the estimate is not lost. Files that the job has
-    written are removed again.
+    being applied becomes the `problem` of the completed job, so that the estimate is not lost.
     """
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     writers.check_targets(job, sequence)
     if job.estimation.stored is not None:
         return _completed(_restored(job, job.estimation.stored, sequence), sequence, progress)
-    estimated = _estimated(job, estimate_plate(job, sequence(), progress))
+    result = estimate_plate(job, sequence(), progress)
+    primaries = plate_primaries(result.firsts[0].tags).primaries or REC709
+    offers = tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in result.offers)
+    estimated = CompletedJob(job, result.estimate, job.exposure.stops, (), None, primaries, offers=offers)
     try:
         return _completed(estimated, sequence, progress)
     except CancelledError:
@@ -90,13 +89,6 @@ def _restored(job: Job, estimate: ResponseEstimate, sequence: Callable[[], Frame
     return CompletedJob(job, estimate, job.exposure.stops, (), None, primaries)
 
 
-def _estimated(job: Job, result: FileEstimate) -> CompletedJob:
-    """Return a job with its new estimate."""
-    primaries = plate_primaries(result.firsts[0].tags).primaries or REC709
-    offers = tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in result.offers)
-    return CompletedJob(job, result.estimate, job.exposure.stops, (), None, primaries, offers=offers)
-
-
 def _completed(
     estimated: CompletedJob, sequence: Callable[[], FrameSequence], progress: Progress | None
 ) -> CompletedJob:
@@ -107,24 +99,16 @@ def _completed(
     completed = replace(estimated, stops=stops)
     if not completed.is_applied:
         return completed
-    shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
+    frames: tuple[int, ...] = ()
+    if (job.plate.numbered or job.plate.frame_count) and job.output.mode is not ApplyMode.EXPORT:  # Blender shows them
+        frames = tuple(range(1, job.plate.frame_count + 1)) or sequence().numbers
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
-        lut = _lut(estimate)
+        origin = (f"Inverse response, {estimate.model}",)
+        is_estimated = not is_loaded(estimate.uncertainty)
+        lut = response_lut(estimate) if is_estimated else inverse_response_lut(estimate.curve, comments=origin)
         files = writers.write(job, lut, stops, sequence, progress, primaries=estimated.primaries)
-    return replace(completed, frames=_numbers(job.plate, sequence) if shows_frames else (), files=files)
-
-
-def _numbers(plate: Plate, sequence: Callable[[], FrameSequence]) -> tuple[int, ...]:
-    """Return the numbers of all frames of a sequence or movie."""
-    return tuple(range(1, plate.frame_count + 1)) if plate.frame_count else sequence().numbers
-
-
-def _lut(estimate: ResponseEstimate) -> Lut1D:
-    """Return the inverse response as a LUT that names the origin of the response."""
-    if is_loaded(estimate.uncertainty):
-        return inverse_response_lut(estimate.curve, comments=(f"Inverse response, {estimate.model}",))
-    return response_lut(estimate)
+    return replace(completed, frames=frames, files=files)
 
 
 def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> FileEstimate:
@@ -138,15 +122,10 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     with frame_reader(job.plate) as read:
         frames = read(sample(sequence))
         if not is_forced:
-            _check_is_encoded(job.plate, frames.paths[0], job.config)
+            with suppress(OSError):  # reported where the file is read
+                file_kind(frames.paths[0])  # refuses formats, which Estimate Anyway does not overrule
+            check_is_encoded(job.plate, frames.paths[0], job.config)
         has_metadata = options.analysis.use_metadata and job.plate.has_metadata
-        is_overruled = has_metadata and is_forced and is_tagged(frames.paths)
+        is_overruled = has_metadata and is_forced and any(read_metadata(path).color.transfer for path in frames.paths)
         analysis = replace(options.analysis, use_metadata=has_metadata and not is_overruled)
         return estimate_files([frames], replace(options, analysis=analysis), progress=progress)
-
-
-def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
-    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its color space."""
-    with suppress(OSError):  # reported where the file is read
-        file_kind(file)
-    check_is_encoded(plate, file, config)

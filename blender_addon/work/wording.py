@@ -12,19 +12,15 @@ if TYPE_CHECKING:
 
 #: Code of an error -> what to do in Blender, behind "; " at the end of its sentence, which names no button.
 REMEDIES = {
-    # library
     "no_camera": "choose another Camera under Advanced, or none",
-    # movies and plates
     "exr_untagged": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
     "frames_far_apart": "move those away that do not belong to the sequence",
     "no_such_frames": "find them with File, External Data",
     "no_such_plate": "find it with File, External Data",
-    # photograph
     "heif_package_missing": "install the add-on again from its zip, or save it as JPEG or PNG",
     "tagged_color_space": "tick Estimate Anyway under Advanced",
     "tagged_encoding": "tick Estimate Anyway under Advanced",
     "tagged_linear": "tick Estimate Anyway under Advanced",
-    # pipeline
     "file_exists": "tick Overwrite",
     "files_exist": "tick Overwrite",
 }
@@ -38,12 +34,6 @@ SHORT_WARNINGS = {
     "gray": "gray photograph",
     "narrow_range": "no window covers the range of brightness",
 }
-
-#: The code of the warning about a picture that hardly distinguishes responses.
-NARROW_RANGE = "narrow_range"
-
-#: Each verdict as a sentence about the response, for one-line reports.
-_SENTENCES = {"usable": "the response is usable", "do not trust": "the response is not to be trusted"}
 
 
 class PanelText(NamedTuple):
@@ -89,7 +79,7 @@ def _sentence(text: str) -> str:
 
 def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
     """Return whether an estimate is little more than the mean of cameras, though its verdict is usable."""
-    return verdict != "do not trust" and NARROW_RANGE in codes
+    return verdict != "do not trust" and "narrow_range" in codes
 
 
 def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
@@ -104,8 +94,9 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     if estimate.warnings:
         more = f", and {len(estimate.warnings) - 1} more" if estimate.warnings[1:] else ""
         warning = f" (warning: {_first_warning(estimate)}{more})"
-    sentence = _SENTENCES[estimate.verdict.value]
-    if says_too_little(estimate.verdict.value, [each.code for each in estimate.warnings]):
+    verdict = estimate.verdict.value
+    sentence = f"the response is {'not to be trusted' if verdict == 'do not trust' else verdict}"
+    if says_too_little(verdict, [each.code for each in estimate.warnings]):
         sentence = "the response is little more than the mean of cameras"
     return f"{name}: {sentence}{warning}; {done}"
 

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of each way to apply a response, named as the `crfnet` command would name them.
-
-`check_targets` checks before the estimate that they can be written.
-"""
+"""The files of each way to apply a response, named as the `crfnet` command would name them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -63,8 +60,7 @@ def write(
     """Write the files of a job in the mode BAKE or EXPORT, with the inverse response and an exposure in stops.
 
     `primaries` are for the color space of an export, while a bake goes by the tags of each frame. Raise CRFNetError or
-    AddonError if there is no folder, a file exists and may not be replaced, or a file cannot be written; new files are
-    removed again, also if `progress` raises.
+    AddonError if a file cannot be written; new files are removed again then, also if `progress` raises.
     """
     if job.output.mode is ApplyMode.BAKE:
         return _bake(job, lut, stops, sequence(), progress)
@@ -72,10 +68,7 @@ def write(
 
 
 def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
-    """Raise AddonError or CRFNetError if the files of a job cannot be written; create nothing.
-
-    `sequence` is called only for a bake.
-    """
+    """Raise AddonError or CRFNetError if the files of a job cannot be written; create nothing."""
     if job.output.mode in WITHOUT_FILES:
         return
     if job.output.mode is ApplyMode.BAKE and job.plate.frame_count:
@@ -111,7 +104,7 @@ def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress:
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=job.plate.alpha_mode)
     with frame_reader(job.plate) as read:
         deliver(plan, light, [read(frames)], progress=progress)
-    return Baked(targets, job.plate.is_sequence)
+    return Baked(targets, is_sequence=job.plate.numbered is not None)
 
 
 def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:

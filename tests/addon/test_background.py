@@ -11,8 +11,8 @@ from blender_addon.work.errors import CancelledError
 def ended(function):
     task = BackgroundTask(function)
     task.start()
-    task.wait(10)
-    assert not task.is_running
+    task.join(10)
+    assert not task.is_alive()
     return task
 
 
@@ -38,9 +38,9 @@ def test_a_function_is_cancelled_at_its_next_step():
 
     task = BackgroundTask(function)
     task.start()
-    task.cancel()
+    task.cancelled.set()
     is_cancelled.set()
-    task.wait(10)
+    task.join(10)
     assert 2 not in steps
     with pytest.raises(CancelledError):
         task.result()

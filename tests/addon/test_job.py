@@ -21,12 +21,12 @@ SHOTS = Path("/shots")
 )
 def test_the_last_number_of_a_sequences_file_is_the_frame_number(file, name, placeholder, pattern):
     plate = plate_from_file(SHOTS / file, is_sequence=True, name="Beach.001")
-    assert plate.is_sequence
+    assert plate.numbered is not None
     assert (plate.name, plate.file, plate.pattern) == (name, SHOTS / placeholder, pattern)
 
 
 @pytest.mark.parametrize(("file", "is_sequence"), [("IMG_1234.jpg", False), ("beach.png", True)])
 def test_a_file_that_is_no_frame_stands_for_itself(file, is_sequence):
     plate = plate_from_file(SHOTS / file, is_sequence=is_sequence)
-    assert not plate.is_sequence
+    assert plate.numbered is None
     assert (plate.name, plate.file, plate.pattern) == (Path(file).stem, SHOTS / file, file)

@@ -7,19 +7,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import (
-    apply,
-    bpy,
-    curve_of,
-    drawn_in,
-    estimate,
-    group_node,
-    labels,
-    load,
-    load_sequence,
-    paint,
-    reopen,
-)
+from .helpers import apply, bpy, curve_of, drawn_in, estimate, group_node, labels, load, load_sequence, paint, reopen
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -185,9 +173,9 @@ class TestWithoutTheGroup:
 
 
 class TestTwice:
-    @pytest.fixture
-    def by_hand(self, image, tree):
-        """The plate's node group, put by hand behind a node that shows the plate."""
+    def test_a_group_behind_the_plate_itself_is_told_until_it_is_applied(
+        self, image, lines_of, tree, codes, composited
+    ):
         apply(image)
         group = group_node().node_tree
         for node in list(tree.nodes):
@@ -196,17 +184,13 @@ class TestTwice:
         source, node = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeGroup")
         source.image, node.node_tree = image, group
         tree.links.new(source.outputs["Image"], node.inputs["Image"])
-        return source
-
-    def test_a_group_behind_the_plate_itself_is_told(self, image, lines_of, by_hand):
         assert lines_of(image) == [TWICE]
         image.colorspace_settings.name = "Non-Color"  # now these are code values
         assert lines_of(image) == []
-
-    def test_applying_mends_it(self, image, lines_of, by_hand, codes, composited):
+        image.colorspace_settings.name = "sRGB"
         apply(image)
         assert lines_of(image) == []
-        (link,) = by_hand.outputs["Image"].links
+        (link,) = source.outputs["Image"].links
         expected = curve_of(image).inverse(codes / 255)
         assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-5
 

@@ -4,7 +4,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import IS_BLENDER_5, bpy, estimate, groups, load, load_sequence
+from .helpers import IS_BLENDER_5, bpy, drawn_in, estimate, groups, labels, load, load_sequence
 
 
 @pytest.fixture
@@ -50,11 +50,12 @@ def test_a_viewer_that_shows_something_else_keeps_it(tree, plates):
 
 
 @pytest.mark.skipif(IS_BLENDER_5, reason="later, a compositor cannot be switched off so")
-def test_a_compositor_that_is_switched_off_stays_off_and_the_report_says_so(tree, plates, capfd):
+def test_a_compositor_that_is_switched_off_stays_off_and_report_and_panel_say_so(tree, plates, in_editor, capfd):
     bpy.context.scene.use_nodes = False
     estimate(plates[0], "NODES")
     assert not bpy.context.scene.use_nodes
     assert "switched off: tick Use Nodes" in capfd.readouterr().out
+    assert "switched off: tick Use Nodes" in " ".join(labels(drawn_in(plates[0], in_editor)))
 
 
 @pytest.mark.skipif(not IS_BLENDER_5, reason="before, the compositor belongs to the scene")

@@ -51,6 +51,8 @@ def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, t
     drawn = drawn_in(image, in_editor)
     assert next(entry for entry in drawn if entry[0] == "label") == ("label", "Do not trust: limited range", "ERROR")
     assert "Expand the range first" in " ".join(labels(drawn))
+    assert ("wm.context_set_string", "Copy the Filter") in operators(drawn)
+    assert ("set", "value", "scale=in_range=limited:out_range=full") in drawn
     assert ("crf.apply_response", "Apply Anyway") in operators(drawn)
     with pytest.raises(RuntimeError, match="Apply Anyway"):
         bpy.ops.crf.apply_response(image=image.name)

@@ -34,7 +34,7 @@ def test_enabled_and_disabled_twice(addon):
         assert hasattr(bpy.types, "CRF_OT_estimate_response")
 
 
-def test_the_estimate_is_the_apis_and_survives_in_the_file_and_is_shown_without_the_plate(
+def test_it_is_the_apis_survives_in_the_file_and_is_shown_without_the_plate(
     image, plate_file, tmp_path, estimate, in_editor
 ):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
@@ -49,19 +49,13 @@ def test_the_estimate_is_the_apis_and_survives_in_the_file_and_is_shown_without_
         bpy.ops.crf.estimate_response(image=image.name)
 
 
-def test_the_prior_and_the_metadata_follow_the_settings(image, plate_file, estimate):
+def test_the_prior_the_metadata_and_the_device_follow_the_settings(image, plate_file, estimate):
     image.camera_response_settings.prior = "any"
-    bpy.ops.crf.estimate_response(image=image.name, ignore_metadata=True)
-    assert_stored(image, estimate(plate_file, prior=Prior.load("any"), use_metadata=False))
-    settings = image.camera_response_settings
-    assert (settings.prior, settings.ignore_metadata) == ("any", True)
-
-
-@pytest.mark.parametrize(("device", "expected"), [("phone", Device.PHONE), ("file", None)])
-def test_the_user_may_state_what_took_the_plate(image, plate_file, estimate, device, expected):
-    bpy.ops.crf.estimate_response(image=image.name, device=device)
-    assert_stored(image, estimate(plate_file, device=expected))
-    assert image.camera_response_settings.device == device
+    for device, expected in (("phone", Device.PHONE), ("file", None)):
+        bpy.ops.crf.estimate_response(image=image.name, ignore_metadata=True, device=device)
+        assert_stored(image, estimate(plate_file, prior=Prior.load("any"), use_metadata=False, device=expected))
+        settings = image.camera_response_settings
+        assert (settings.prior, settings.ignore_metadata, settings.device) == ("any", True, device)
 
 
 def test_undo_takes_everything_back(image):

@@ -78,10 +78,10 @@ def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, 
     image = load_sequence(tmp_path / "shot.0000.png")
     run_now(image, "NODES")
     run = operator(image.name, apply="BAKE")
-    run.is_estimated = True
+    run.needs_estimate = True
     run.invoke(interface, None)
     deadline = time.monotonic() + 30
-    while not list(tmp_path.rglob("*.exr")) and run._run.task.is_running and time.monotonic() < deadline:
+    while not list(tmp_path.rglob("*.exr")) and run._run.task.is_alive() and time.monotonic() < deadline:
         time.sleep(0.001)
     run.modal(interface, ESC)
     assert drive(run, interface) == {"CANCELLED"}
@@ -114,8 +114,8 @@ def test_closing_blender_stops_the_run(operator, interface, image):
     run.invoke(interface, None)
     run.cancel(interface)
     assert interface.timers == []
-    run._run.task.wait(30)
-    assert not run._run.task.is_running
+    run._run.task.join(30)
+    assert not run._run.task.is_alive()
 
 
 def test_another_workspace_keeps_its_status_text(operator, interface, image):

@@ -10,11 +10,7 @@ from .helpers import IS_BLENDER_5, bpy, curve_of, estimate, group_node, load, lo
 FRAMES = 12
 
 #: Container, codec and bits of the movies: RGB without loss, YUV of limited range without further loss, RGB of 10 bits.
-CODECS = {
-    "rgb.mkv": ("MKV", "FFV1", "8"),
-    "yuv.mp4": ("MPEG4", "H264", "8"),
-    "deep.mkv": ("MKV", "FFV1", "10"),
-}
+CODECS = {"rgb.mkv": ("MKV", "FFV1", "8"), "yuv.mp4": ("MPEG4", "H264", "8"), "deep.mkv": ("MKV", "FFV1", "10")}
 
 
 def frame_codes(codes, number):

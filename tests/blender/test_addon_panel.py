@@ -31,8 +31,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
 
 
 @pytest.mark.parametrize(
-    ("verdict", "word", "icon"),
-    [("usable", "Usable", "INFO"), ("do not trust", "Do not trust", "ERROR")],
+    ("verdict", "word", "icon"), [("usable", "Usable", "INFO"), ("do not trust", "Do not trust", "ERROR")]
 )
 def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdict, word, icon):
     image["camera_response"]["verdict"] = verdict
@@ -134,13 +133,6 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["device"].enum_items.keys() == ["file", *defaults.DEVICES]
     assert -settings["exposure"].hard_min == settings["exposure"].hard_max == defaults.MAX_EXPOSURE
     assert defaults.CONFIG_NAME == CONFIG_NAME
-
-
-def test_the_filter_of_an_advice_can_be_copied(image, in_editor):
-    image["camera_response"]["advice"] = "Expand it with its filter scale=in_range=limited:out_range=full."
-    drawn = drawn_in(image, in_editor)
-    assert ("wm.context_set_string", "Copy the Filter") in operators(drawn)
-    assert ("set", "value", "scale=in_range=limited:out_range=full") in drawn
 
 
 def test_a_long_option_is_broken_behind_a_colon(addon):

@@ -7,19 +7,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import (
-    IS_BLENDER_5,
-    apply,
-    bpy,
-    drawn_in,
-    estimate,
-    group_node,
-    load,
-    load_sequence,
-    operators,
-    paint,
-    plates,
-)
+from .helpers import apply, bpy, drawn_in, estimate, group_node, load, load_sequence, operators, paint, plates
 
 
 @pytest.fixture
@@ -30,8 +18,7 @@ def compositor(image, tree, in_editor):
     def active(node):
         tree.nodes.active = node
         with in_editor("NODE_EDITOR") as space:
-            if IS_BLENDER_5:
-                space.node_tree = tree
+            space.node_tree = tree
             return plates.active_datablock(bpy.context)
 
     return image, tree, active

@@ -171,6 +171,7 @@ class TestTheRestStaysAsItIs:
         limit = CODES if depth == "uint8" else DEEP
         assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < limit
         assert image.colorspace_settings.name == space
+        assert not image.is_dirty
 
     def test_the_copy_stands_behind_its_plate(self, image, tree):
         """And does not outlive its user."""

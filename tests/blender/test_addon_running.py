@@ -32,7 +32,7 @@ def waiting(interface):
         time.sleep(0.001)
     yield run, job
     job.end.set()
-    run.task.wait(30)
+    run.task.join(30)
 
 
 def test_the_progress_is_drawn_only_if_it_changed_and_seldom(waiting, interface, monkeypatch):
@@ -84,10 +84,10 @@ def test_one_run_at_a_time(waiting, image):
             operator(image=image.name)
     run, job = waiting
     assert bpy.ops.crf.cancel_run() == {"FINISHED"}
-    assert run.task.is_cancelled
+    assert run.task.cancelled.is_set()
     assert run.text == "Canceling"
     job.end.set()
-    run.task.wait(30)
+    run.task.join(30)
     run.end()
     assert bpy.ops.crf.estimate_response.poll()
     assert not bpy.ops.crf.cancel_run.poll()

@@ -9,9 +9,19 @@ from typing import TypeAlias
 
 import bpy
 
-from ..plates import COMPOSITOR, SHADER, SHOWN, Datablock
+from ..plates import COMPOSITOR, SHADER, SHOWN, Datablock, datablock_of_node
 from .building import GAP, IS_BLENDER_5, WIDTH, activate
-from .links import LOOK, PLATE, groups_of, holds_group_of, neighbors_behind, nodes_behind, nodes_of, output_of
+from .links import (
+    LOOK,
+    PLATE,
+    groups_of,
+    holds_group_of,
+    neighbors_behind,
+    nodes_behind,
+    nodes_of,
+    output_of,
+    plates_and_groups,
+)
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor or texture, or a compositor's Image node.
@@ -120,7 +130,8 @@ def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
 
 def is_output(node: bpy.types.Node, scene: bpy.types.Scene) -> bool:
     """Return whether a node is the output of a scene's compositor."""
-    return node.type == "COMPOSITE" or (IS_BLENDER_5 and node == output_of(scene.compositing_node_group))
+    tree = scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+    return tree is not None and node == output_of(tree)
 
 
 def is_switched_off(scene: bpy.types.Scene) -> bool:
@@ -243,7 +254,7 @@ def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNode
 
 def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show a plate or its code values."""
-    return [node for node in nodes_of(plate) if node.id_data == tree]
+    return [node for node in plates_and_groups(tree) if datablock_of_node(node) == plate]
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:

@@ -2,5 +2,5 @@
 """Tools of the Image Editor that the other editors lack.
 
 comparison   the linear plate in the place of the plate, for looking only
-image_tools  before and after, the eyedropper for gray, and frames that Blender took for UDIM tiles
+image_tools  before and after, the way back from a bake, the eyedropper for gray, frames taken for UDIM tiles
 """

@@ -42,8 +42,7 @@ _PAUSE = 0.2
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
     """Show the linear plate in an editor that shows the plate; the `key` finds it again.
 
-    Its pixels, shape (H, W, 4), in a color space, are multiplied by alpha; the bottom row comes first. Raise AddonError
-    if there is no room for its file.
+    Its pixels are as of `linear_pixels`, in a color space. Raise AddonError if there is no room for its file.
     """
     plate, path = space.image, Path(bpy.app.tempdir, f"linear_{space.image.session_uid}.exr")
     buffer = lazy_import.load("OpenImageIO").ImageBuf(np.ascontiguousarray(pixels[::-1]))
@@ -135,8 +134,7 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     """Return the code values of an image, of the frame that an editor shows: float32, shape (H, W, 3 or 4), in [0, 1].
 
     The bottom row comes first, and colors are not multiplied by alpha, which is left out where Blender does not take it
-    for coverage. Raise AddonError if Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels
-    are not code values; CRFNetError if its file cannot be read, or does not hold encoded values.
+    for coverage. Raise AddonError or CRFNetError if the image cannot be read, or does not hold encoded values.
     """
     width, height = image.size
     # Where Blender decodes HEIC, its codes are others by a few; of a sequence, it has the frame that it read last.
@@ -145,7 +143,13 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
     if image.source == "MOVIE":
-        return _codes_of_movie(image, user.frame_current)
+        codes = codes_of_frame(image, user.frame_current)
+        if codes is None:
+            raise AddonError(
+                f"{image.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as"
+                " an image sequence"
+            )
+        return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
     alpha = alpha_mode(image)
     # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
     if image.is_float or alpha == "PREMUL":
@@ -154,17 +158,6 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if image.channels < 3:
         return pixels[..., :1].repeat(3, axis=2)
     return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
-
-
-def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
-    """Return the code values of a frame of a movie of 8 bits."""
-    codes = codes_of_frame(movie, frame)
-    if codes is None:
-        raise AddonError(
-            f"{movie.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as an"
-            " image sequence"
-        )
-    return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 #: Half the side of the square of pixels whose mean is picked.
 REACH = 2
 
-#: The text in the status bar while gray is picked.
-PICK_HINT = "Click on something gray in the plate  |  Esc to cancel"
-
 
 #: The entry of the key in Blender's keymaps, with its keymap, while it is there.
 _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
@@ -102,7 +99,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
         comparison.end(context.space_data)
         self._workspace = context.workspace
         context.window.cursor_modal_set("EYEDROPPER")
-        running.set_status(self._workspace, PICK_HINT)
+        running.set_status(self._workspace, "Click on something gray in the plate  |  Esc to cancel")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 

@@ -48,7 +48,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         """Store the response on the plate."""
         try:
             plate = self.chosen_plate(context)
-            primaries = self._primaries(plate)
+            primaries = _primaries(plate)
             path = absolute(self.filepath)
             if path is None or not Path(self.filepath).name:
                 raise AddonError("No LUT file is chosen: choose one")
@@ -66,13 +66,14 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
         return {"FINISHED"}
 
-    def _primaries(self, datablock: plates.Datablock) -> "Primaries":
-        """Return the primaries that the plate is encoded in."""
-        plate, frame_files = plates.plate_of(datablock), lazy_import.load(".work.frame_files")
-        is_encoded = lazy_import.load(".work.encoding_check").holds_encoded_values(
-            plate, color_management.running_config(), is_forced=datablock.camera_response_settings.force
-        )
-        return frame_files.primaries_of(plate, frame_files.frames_of(plate), is_encoded=is_encoded)
+
+def _primaries(datablock: plates.Datablock) -> "Primaries":
+    """Return the primaries that a plate is encoded in."""
+    plate, frame_files = plates.plate_of(datablock), lazy_import.load(".work.frame_files")
+    holds_encoded_values = lazy_import.load(".work.encoding_check").holds_encoded_values
+    is_forced = datablock.camera_response_settings.force
+    is_encoded = holds_encoded_values(plate, color_management.running_config(), is_forced=is_forced)
+    return frame_files.primaries_of(plate, frame_files.frames_of(plate), is_encoded=is_encoded)
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OT_load_lut,))

@@ -12,7 +12,7 @@ from ...scene import plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
 from .. import running
 from ..image_editor import comparison
-from ..operator_base import NO_ESTIMATE, ChosenPlate, failed
+from ..operator_base import ChosenPlate, failed
 from ..plate_settings import CHOICES, remember_applied
 
 if TYPE_CHECKING:
@@ -45,10 +45,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
 
     targets: bpy.props.CollectionProperty(type=CRF_OtherPlate, options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def why_not(cls, context: bpy.types.Context) -> str:
-        """Return that the plate has no response."""
-        return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
+    needs_estimate = True
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose among all other plates of the file."""
@@ -77,7 +74,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
         """Apply it to one plate after the other, once all of them are known to be usable."""
         done = 0
         try:
-            source = self.estimated_plate(context)
+            source = self.chosen_plate(context)
             chosen = self._chosen(source)
             jobs = [_job(source, datablock) for datablock in chosen]
             comparison.end_all()
@@ -97,11 +94,11 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
 
     def _chosen(self, source: plates.Datablock) -> list[plates.Datablock]:
         """Return the plates that get the response."""
-        chosen = [target.datablock for target in self.targets if target.is_chosen]
-        chosen = [datablock for datablock in dict.fromkeys(chosen) if datablock != source]
+        chosen = dict.fromkeys(target.datablock for target in self.targets if target.is_chosen)
+        chosen.pop(source, None)
         if not chosen:
             raise AddonError("No other plate is chosen: tick at least one")
-        return chosen
+        return list(chosen)
 
 
 def other_plates(source: plates.Datablock) -> Iterator[plates.Datablock]:
@@ -137,14 +134,10 @@ def _job(source: plates.Datablock, target: plates.Datablock) -> "Job":
     arguments = {name: getattr(settings, name) for name in CHOICES} | {"compose": False}
     if arguments["apply"] == "BAKE":
         arguments["apply"] = "ESTIMATE"
-    job = lazy_import.load(".ui.gather").gather_job(target, is_estimated=False, arguments=arguments)
+    job = lazy_import.load(".ui.gather").gather_job(target, arguments, is_estimated=False)
     origin = stored_estimate.origin(source)
-    came = replace(
-        job.estimation,
-        stored=stored_estimate.restored(source),
-        origin=f"From {source.name}" + (f" ({origin})" if origin else ""),
-    )
-    return replace(job, estimation=came)
+    words = f"From {source.name}" + (f" ({origin})" if origin else "")
+    return replace(job, estimation=replace(job.estimation, stored=stored_estimate.restored(source), origin=words))
 
 
 def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> None:
