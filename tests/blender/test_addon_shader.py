@@ -22,7 +22,8 @@ def shader(addon, in_editor, tmp_path):
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 1
     bpy.ops.mesh.primitive_plane_add(size=1, location=(0, 0, -1))
     bpy.context.object.data.materials.append(material)
-    material.use_nodes, tree = True, material.node_tree
+    material.use_nodes = True
+    tree = material.node_tree
     tree.nodes.clear()
     texture, glow, end = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexImage", "Emission", "OutputMaterial"))
     texture.interpolation, tree.nodes.active = "Closest", glow
