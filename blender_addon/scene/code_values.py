@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The code values of a plate for the compositor: a copy of its image or clip, which Blender does not linearize.
+"""The code values of a plate for nodes: a copy of its image or clip, which Blender does not linearize.
 
-The node group needs code values, but an Image node delivers their conversion by the image's color space. So the nodes
+The node group needs code values, but an image's node delivers their conversion by the image's color space. So the nodes
 that are linearized read a copy whose color space is Non-Color, and the plate itself stays as it is in every editor.
 Whatever color space the plate gets later, the nodes are right.
 

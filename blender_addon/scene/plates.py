@@ -88,11 +88,12 @@ def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
 
 def _plate_among(nodes: bpy.types.Nodes) -> Datablock | None:
     """Return the plate of the active node, for a plate's node group of the node at its first input; or the only one."""
-    node, seen = nodes.active, set()
+    node = nodes.active
     properties = (getattr(node, "node_tree", None) or {}).keys()
     if not any(name.startswith("camera_response") for name in properties):
         all_plates = {datablock_of_node(each) for each in nodes} - {None}
         return datablock_of_node(node) or (all_plates.pop() if len(all_plates) == 1 else None)
+    seen: set[bpy.types.Node] = set()
     while node not in (None, *seen) and datablock_of_node(node) is None:
         seen.add(node)
         source = node.inputs.get("Image") or next(iter(node.inputs), None)

@@ -4,7 +4,7 @@
 operators       "Estimate Camera Response", "Apply Camera Response", "Cancel"
 operator_base   the base of operators: when they can run, the plate that a script names, how they report a problem
 running         the one run that is under way, and how its progress is shown
-panel           the sidebar panel and the menu entries of three editors
+panel           the sidebar panel and the menu entries of four editors
 estimate_box    the panel's box of an estimate
 image_editor    tools of the Image Editor: before and after, the eyedropper for gray
 plate_settings  the choices for one plate

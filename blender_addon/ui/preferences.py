@@ -12,7 +12,7 @@ ADDON = __package__.rpartition(".")[0]
 
 #: The ways to apply a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
-    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor"),
+    ("NODES", "Nodes", "At once: a node group linearizes the plate, in the compositor or the shader shown"),
     ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them"),
     ("EXPORT", "Export", "Write LUTs, and a copy of Blender's OpenColorIO config with a color space for the plate"),
 )

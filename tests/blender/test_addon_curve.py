@@ -67,19 +67,3 @@ def test_it_clips_as_a_bake_does(decoded):
     assert decoded(ResponseCurve.gamma(), [-0.5, -0.001, 0, 1, 1.001, 1.5]) == pytest.approx(
         [0, 0, 0, 1, 1, 1], abs=1e-5
     )
-
-
-def test_a_group_of_an_earlier_version_is_built_anew_and_drops_its_lut_image(estimated, tree, composited):
-    """It looked code values up in an image."""
-    bpy.ops.crf.apply_response(image=estimated.name, apply="NODES")
-    (node,) = (node for node in tree.nodes if node.type == "GROUP")
-    light = composited(node.outputs[0])
-    lut = bpy.data.images.new(".Camera Response plate LUT", 4, 1, float_buffer=True)
-    lut["camera_response_of"] = estimated
-    node.node_tree.nodes.clear()
-    table, end = (node.node_tree.nodes.new(kind) for kind in ("CompositorNodeImage", "NodeGroupOutput"))
-    table.image = lut
-    node.node_tree.links.new(table.outputs["Image"], end.inputs[0])
-    bpy.ops.crf.apply_response(image=estimated.name, apply="NODES")
-    assert np.array_equal(composited(node.outputs[0]), light)
-    assert lut.users == 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's nodes in compositors.
+"""The add-on's nodes in compositors and shaders.
 
-compositor   the place of the node group in a compositor
+compositor   the place of the node group in a compositor or shader
 ready_comp   the render over a plate, at the output and in a viewer
 links        the nodes behind a node
 plate_group  the inverse response as a node group

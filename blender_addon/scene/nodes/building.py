@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import bpy
@@ -28,7 +27,7 @@ _COLUMN, _ROW = 190, -230
 Socket: TypeAlias = bpy.types.NodeSocket
 
 #: An operand of a node that computes: a socket, or a number or vector.
-Operand: TypeAlias = Socket | float | Sequence[float]
+Operand: TypeAlias = Socket | float | list[float]
 
 
 def activate(node: bpy.types.Node) -> None:
@@ -60,10 +59,10 @@ class NodeGrid:
         node = self.node(f"{self._common}Node{kind}", column, row=row)
         node.operation = operation
         for operand, socket in zip(operands, (each for each in node.inputs if each.enabled), strict=False):
-            if isinstance(operand, Socket):
-                self.link(operand, socket)
-            else:
+            if isinstance(operand, int | float | list):
                 socket.default_value = operand
+            else:
+                self.link(operand, socket)
         return next(socket for socket in node.outputs if socket.enabled)
 
     def curve(self, colors: Socket, start: float, end: float, column: float, row: float) -> bpy.types.Node:
