@@ -56,7 +56,6 @@ class TestRunning(WindowTest):
         artist.screen.click(*position)
         self.assertEqual(len(artist.call("runs.running")), 1)
         self.assertFalse(artist.call("runs.can_run"))
-        self.keep(artist.picture(), "running")
         artist.wait_for_end()
         artist.settle()
         self.assertTrue(artist.call("runs.can_run"))

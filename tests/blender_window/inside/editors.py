@@ -65,8 +65,8 @@ def show(kind: str, *, alone: bool = True) -> None:
 
 def show_tab(kind: str) -> None:
     """Open the tab of the editor's sidebar that has the add-on's panel."""
-    panel = next(cls for cls in bpy.types.Panel.__subclasses__() if _is_ours(cls, kind))
-    region(kind, "UI").active_panel_category = panel.bl_category
+    ours = (getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("CRF_PT"))
+    region(kind, "UI").active_panel_category = next(panel for panel in ours if panel.bl_space_type == kind).bl_category
     area(kind).tag_redraw()
 
 
@@ -122,12 +122,3 @@ def change_workspace(name: str) -> str:
     before = window().workspace.name
     window().workspace = bpy.data.workspaces[name]
     return before
-
-
-def _is_ours(panel: type, kind: str) -> bool:
-    """Return whether a panel is the add-on's one for an editor, and no part of another."""
-    return (
-        panel.__name__.startswith("CRF_PT")
-        and getattr(panel, "bl_space_type", "") == kind
-        and not getattr(panel, "bl_parent_id", "")
-    )
