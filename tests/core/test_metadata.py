@@ -84,8 +84,8 @@ def test_xmp_names_programs_that_saved_pixels_and_the_raw_file(tmp_path, changed
         b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
         b' xmlns:stEvt="http://ns.adobe.com/xap/1.0/sType/ResourceEvent#" crs:RawFileName="_DSC0001.NEF"'
         b' xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/"><xmpMM:History><rdf:Seq>'
-        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)" stEvt:changed="%b"/></rdf:Seq>'
-        b"</xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
+        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)" stEvt:changed="%b"/>'
+        b"</rdf:Seq></xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
     ) % changed.encode()
     path = tmp_path / "a.jpg"
     path.write_bytes(with_jpeg_segment(jpeg(path, Software="Ver.1.0"), 0xE1, xmp))

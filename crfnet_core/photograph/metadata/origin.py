@@ -196,7 +196,7 @@ def _size_taken(metadata: FileMetadata) -> tuple[int, int] | None:
 def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | None:
     """Return whether a picture was scaled from another size, both (shorter, longer) side; None if it was cut."""
     ratios = now[0] / before[0], now[1] / before[1]
-    if 1 - SAME_SHAPE < min(ratios) and max(ratios) <= 1:
+    if min(ratios) > 1 - SAME_SHAPE and max(ratios) <= 1:
         return None
     return True if ratios[1] > 1 or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
 
