@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from crfnet_core.photograph.image_io.file_kinds import AVIF_BRANDS, HEIC_BRANDS
 
@@ -37,6 +37,9 @@ _TRANSPORT = ((188, 0), (192, 4))
 #: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display. And the seconds
 #: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 IPT_PROFILE, OPENING = 5, 60
+
+#: Codecs of pictures by themselves: they hold a thumbnail where a stream of another codec is there, too.
+STILL_CODECS = ("mjpeg", "png", "bmp", "gif", "webp", "tiff")
 
 #: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.
 MOST_PIXELS, _TOO_LARGE = 150_000_000, "exceeds specified max pixel count"
@@ -78,7 +81,7 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
         with av.logging.Capture() as messages:
             opening = av.open(f"file:{path}", options=bounds, metadata_errors="replace", timeout=(OPENING, None))
         with opening as container:
-            stream = container.streams.best("video")
+            stream = _film(container)
             if not isinstance(stream, av.VideoStream) or (context := stream.codec_context) is None:
                 raise PlateError("no_video", path=path)
             is_refused = any(_TOO_LARGE in message for _, _, message in messages)
@@ -91,6 +94,14 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
             yield container, stream
     except (av.FFmpegError, UnicodeDecodeError) as problem:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
+
+
+def _film(container: InputContainer) -> Any:
+    """Return FFmpeg's best video stream, but not a thumbnail: a still picture next to a stream of another codec."""
+    decoded = [stream for stream in container.streams.video if stream.codec_context]
+    films = [stream for stream in decoded if stream.codec_context.codec.canonical_name not in STILL_CODECS]
+    best = container.streams.best("video")
+    return best if best in films or not films else films[0]
 
 
 @cache

@@ -20,7 +20,7 @@ from ..errors import PlateError
 from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, plain_stem
-from ..plates.light import PlateLight
+from ..plates.light import PlateLight, is_finished
 from ..report.words import result_line
 from .estimates import check_network, load_camera_response, response_lut
 from .photographs import unreadable_reason
@@ -135,10 +135,12 @@ class Task:
         )
 
     def is_done(self, record: PhotographRecord | None) -> bool:
-        """Return whether a record says that this photograph needs no work, and its files are still there."""
+        """Return whether a record says that this photograph needs no work, and its files are there, frames whole."""
         if record is None or record.error or (record.folder, record.stem) != (self.folder.as_posix(), self.stem):
             return False
-        return record.options == self.options and all(path.exists() for path in self.targets)
+        if record.options != self.options or not all(path.exists() for path in self.targets):
+            return False
+        return all(map(is_finished, (path for path in self.targets if path.suffix == ".exr")))
 
 
 def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]) -> list[Task]:

@@ -92,6 +92,11 @@ def check_finished(plates: Iterable[tuple[Path, str]], light: PlateLight, depth:
             raise PlateError("finished_differs", path=path, difference=difference)
 
 
+def is_finished(path: Path) -> bool:
+    """Return whether a file is a whole linear frame."""
+    return EXPOSURE in _attributes(path)
+
+
 def _difference(written: dict[str, Any], plate: str, light: PlateLight, depth: str) -> str:
     """Return in words how a finished frame differs; empty if it does not."""
     if written.get(PLATE) != plate:

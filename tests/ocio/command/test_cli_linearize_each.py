@@ -1,6 +1,7 @@
 """`crfnet linearize --each`: many photographs as linear EXR."""
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -68,6 +69,14 @@ def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tm
     assert linearize(*arguments).code == 0
     assert (tmp_path / "out" / "a.exr").stat().st_mtime_ns == before
     assert len(records_in(tmp_path / "out")) == 3
+
+
+def test_a_recorded_file_that_was_cut_since_is_refused(linearize, photographs, look, tmp_path):
+    """As a copy that was stopped leaves it."""
+    linearize(photographs, "--lut", look / "plate.spi1d")
+    os.truncate(tmp_path / "out" / "b.exr", 3000)
+    done = linearize(photographs, "--lut", look / "plate.spi1d")
+    assert (done.refusal, "1 of 3 photographs failed" in done.err) == ("photographs_failed", True)
 
 
 def test_another_response_is_refused(linearize, photographs, look, tmp_path):

@@ -224,18 +224,19 @@ def test_frames_are_upright(tmp_path, degrees, quarters):
     np.testing.assert_array_equal(frame.samples, np.rot90(next(stored.loaders([0]))().samples, quarters))
 
 
-def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path):
-    with av.open(str(tmp_path / "a.mov"), "w") as container:
+@pytest.mark.parametrize(("name", "side"), [("a.mov", 64), ("a.mkv", 480)])
+def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path, name, side):
+    with av.open(str(tmp_path / name), "w") as container:
         thumbnail, film = container.add_stream("mjpeg", rate=24), container.add_stream("libx264", rate=24)
-        thumbnail.width, thumbnail.height, thumbnail.pix_fmt = 64, 64, "yuvj420p"
-        film.disposition = av.stream.Disposition.default
+        thumbnail.width, thumbnail.height, thumbnail.pix_fmt = side, side, "yuvj420p"
+        (film if side < 96 else thumbnail).disposition = av.stream.Disposition.default
         film.width, film.height, film.pix_fmt = 128, 96, "yuv420p"
-        for stream, form, count, size in ((thumbnail, "yuvj420p", 1, (64, 64)), (film, "yuv420p", 12, (128, 96))):
+        for stream, form, count, size in ((thumbnail, "yuvj420p", 1, (side, side)), (film, "yuv420p", 12, (128, 96))):
             for image in pictures(count, size):
                 frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form)
                 container.mux(stream.encode(frame))
             container.mux(stream.encode())
-    result = read_stream(tmp_path / "a.mov")
+    result = read_stream(tmp_path / name)
     assert (result.codec, result.picture.size, result.frame_count) == ("H.264", (128, 96), 12)
 
 
