@@ -83,8 +83,9 @@ def calibrate_stack(
     checks.check_seen(white * every.brightness[every.is_used])
     readings = _readings(exposures, frames[0])
     labels, measurement, other = _measured(every, readings)
-    names = [frame.path.name for frame in frames]
-    checks.check_measurement(measurement, names, white=white)
+    names = np.array([frame.path.name for frame in frames])
+    used, left_out = names[measurement.frames].tolist(), names[~measurement.frames].tolist()
+    checks.check_measurement(measurement, used, left_out, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
@@ -99,7 +100,7 @@ def calibrate_stack(
         frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=checks.notices_of(measurement, names, exposures, white=white),
+        warnings=checks.notices_of(measurement, used, left_out, exposures, white=white),
     )
 
 

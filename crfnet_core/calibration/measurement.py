@@ -34,20 +34,16 @@ OUTLIER = 5.0
 #: 8-bit codes from which the crossing is extrapolated in a straight line, and through which the parabola leads.
 LINE_FROM, PARABOLA_FROM, LAST_CODE, WHITE_CODE = 252, 240, 254, 254.5
 
-#: Samples that have to be white in one frame and measured in another for the crossing to be known.
-LEAST_CROSSINGS = 30
-
-#: Fraction of the samples, the flattest, that the crossing is looked for in.
-FLATTEST = 0.5
+#: Samples that have to be white in one frame and measured in another for the crossing to be known, and the fraction of
+#: these, the flattest, that it is looked for in.
+LEAST_CROSSINGS, FLATTEST = 30, 0.5
 
 #: Stops below the crossing in which the fraction of white pixels is taken, and the fraction that noise makes there.
 BELOW, NOISE_BELOW = 0.5, 0.02
 
-#: Standard deviation in stops of the anchor where its methods agree: the end of a response is seen in steps of a code.
-LEAST_DEVIATION = 0.02
-
-#: Standard deviation in stops where no frame reaches white: the end comes from known responses.
-UNSEEN_DEVIATION = 0.4
+#: Standard deviation in stops of the anchor where its methods agree (the end of a response is seen in steps of a code),
+#: and where no frame reaches white (the end comes from known responses).
+LEAST_DEVIATION, UNSEEN_DEVIATION = 0.02, 0.4
 
 
 @dataclass(frozen=True)
