@@ -13,9 +13,8 @@ from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
-from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
+from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure, uncertainty_of
 from crfnet_core.calibration.robust import rms_codes
-from crfnet_core.calibration.uncertainty import uncertainty_of
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
 from crfnet_core.response.curve import ResponseCurve

@@ -14,21 +14,8 @@ from crfnet_core.calibration import PairCalibration
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
+from . import sheet
 from .calibration import Measured, calibration_lines, white_words
-from .sheet import (
-    BOTTOM,
-    CURVE,
-    DOT,
-    HEIGHT,
-    INK,
-    LONGEST_LINE,
-    QUIET,
-    SIZE,
-    WARNING_INK,
-    ellipsized,
-    plain,
-    sheet_figure,
-)
 
 #: Darkest irradiance that is drawn, log2; white is 0.
 DARKEST = -12
@@ -47,11 +34,12 @@ STACK_CAUSES, GAP = {"Irradiance in stops, white = 0": 0}, 0.02
 
 def draw_calibration(path: Path, calibration: Measured) -> None:
     """Write the picture of a calibration as PNG, or raise PlateError; the same input gives the same bytes."""
-    with sheet_figure(path) as figure:
+    with sheet.sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
-        _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)
-        upper, lower = 0.42, HEIGHT - 0.42 - 0.09
-        points = figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper))
+        width = sheet.HEIGHT * sheet.SIZE[1] / sheet.SIZE[0]
+        _draw_curve(figure.add_axes((0.058, sheet.BOTTOM, width, sheet.HEIGHT)), calibration)
+        upper, lower = 0.42, sheet.HEIGHT - 0.42 - 0.09
+        points = figure.add_axes((0.56, sheet.BOTTOM + sheet.HEIGHT - upper, 0.412, upper))
         if isinstance(calibration, PairCalibration):
             colors = CHANNELS[calibration.points[:, 7].astype(int)]
             title, causes = "Cells of every shot, over irradiance in stops", PAIR_CAUSES
@@ -63,7 +51,7 @@ def draw_calibration(path: Path, calibration: Measured) -> None:
         _draw_points(points, calibration, colors, title)
         step = (0.412 + GAP) / len(causes)
         for number, (cause, column) in enumerate(causes.items()):
-            axes = figure.add_axes((0.56 + number * step, BOTTOM, step - GAP, lower))
+            axes = figure.add_axes((0.56 + number * step, sheet.BOTTOM, step - GAP, lower))
             _draw_residuals(axes, calibration, column, colors, cause)
             axes.set_ylabel("Residual (codes)" if number == 0 else "")
             axes.tick_params(labelleft=number == 0)
@@ -73,18 +61,18 @@ def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
     """Draw the camera, both uncertainties, and the warnings."""
     uncertainty = calibration.uncertainty
     name = path.stem.removesuffix("_sheet")
-    figure.text(0.058, 0.945, ellipsized(f"Measured response {name}", 60), size=15, weight="bold", va="center")
+    figure.text(0.058, 0.945, sheet.ellipsized(f"Measured response {name}", 60), size=15, weight="bold", va="center")
     parts = [
         f"shape to {uncertainty.shape_stops:.2f} stop",
         f"scale to {uncertainty.scale_stops:.2f} stop",
         f"residual {calibration.residual:.1f} codes (RMS)",
         white_words(calibration),
     ]
-    figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
+    figure.text(0.058, 0.9, sheet.DOT.join(parts), size=11, va="center", color=sheet.INK)
     lines = calibration_lines(calibration)
-    figure.text(0.058, 0.868, ellipsized(lines[0], LONGEST_LINE), va="center", color=QUIET)
-    warnings = ellipsized(DOT.join(map(str, calibration.warnings)), LONGEST_LINE)
-    figure.text(0.058, 0.026, warnings, va="center", color=WARNING_INK)
+    figure.text(0.058, 0.868, sheet.ellipsized(lines[0], sheet.LONGEST_LINE), va="center", color=sheet.QUIET)
+    warnings = sheet.ellipsized(sheet.DOT.join(map(str, calibration.warnings)), sheet.LONGEST_LINE)
+    figure.text(0.058, 0.026, warnings, va="center", color=sheet.WARNING_INK)
 
 
 def _draw_curve(axes: Axes, calibration: Measured) -> None:
@@ -93,14 +81,14 @@ def _draw_curve(axes: Axes, calibration: Measured) -> None:
     gamma, brightness = ResponseCurve.gamma().brightness, calibration.curve.brightness
     low, high = calibration.codes_seen if isinstance(calibration, PairCalibration) else (0, 255)
     seen = np.where((brightness >= low / 255) & (brightness <= high / 255), brightness, np.nan)
-    axes.plot(irradiance, seen, color=CURVE, linewidth=2.2, label="measured")
+    axes.plot(irradiance, seen, color=sheet.CURVE, linewidth=2.2, label="measured")
     if (low, high) != (0, 255):
-        axes.plot(irradiance, brightness, color=CURVE, linewidth=1.4, linestyle=":", label="not seen")
-    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
+        axes.plot(irradiance, brightness, color=sheet.CURVE, linewidth=1.4, linestyle=":", label="not seen")
+    axes.plot(irradiance, gamma, color=sheet.QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
     axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
     axes.legend(loc="lower right", frameon=False, fontsize=10)
-    plain(axes)
+    sheet.plain(axes)
 
 
 def _draw_points(axes: Axes, calibration: Measured, colors: Float64Array, title: str) -> None:
@@ -108,10 +96,10 @@ def _draw_points(axes: Axes, calibration: Measured, colors: Float64Array, title:
     stops, brightness = calibration.points.T[:2]
     axes.scatter(stops, brightness, s=1.5, c=colors, linewidths=0, rasterized=True)
     dense = np.linspace(DARKEST, 0.5, 600)
-    axes.plot(dense, calibration.curve.forward(np.exp2(dense)), color=INK, linewidth=1)
+    axes.plot(dense, calibration.curve.forward(np.exp2(dense)), color=sheet.INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(0, 1.02), ylabel="Brightness")
-    axes.set_title(title, loc="left", size=9, color=QUIET, pad=5)
-    plain(axes)
+    axes.set_title(title, loc="left", size=9, color=sheet.QUIET, pad=5)
+    sheet.plain(axes)
 
 
 def _draw_residuals(axes: Axes, calibration: Measured, column: int, colors: Float64Array, title: str) -> None:
@@ -121,7 +109,9 @@ def _draw_residuals(axes: Axes, calibration: Measured, column: int, colors: Floa
     axes.scatter(cause, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
     if isinstance(calibration, PairCalibration):
         parts = np.array_split(cause.argsort(), 8)
-        axes.plot([np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=INK)
-    axes.axhline(0, color=INK, linewidth=1)
-    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
-    plain(axes)
+        medians = [[np.median(values[part]) for part in parts] for values in (cause, residual)]
+        axes.plot(*medians, color=sheet.INK)
+    axes.axhline(0, color=sheet.INK, linewidth=1)
+    limits = (DARKEST, 0.5) if column == 0 else None
+    axes.set(xlim=limits, ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
+    sheet.plain(axes)

@@ -20,7 +20,7 @@ FAINT = 0.25
 LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION, MATRIX_DEVIATION = 0.2, 0.5, 0.1, 0.1, 100.0
 
 #: Stops by which raw saturation of white lies above the JPEG's white: the prior mean and its standard deviation.
-HEADROOM, HEADROOM_DEVIATION = 0.2, 0.3
+HEADROOM = (0.2, 0.3)
 
 #: Rounds of reweighting, and those that do not yet leave outliers out.
 ROUNDS, LENIENT = 5, 2
@@ -45,11 +45,7 @@ class PairFit(FittedResponse):
 
 
 def fit_pairs(
-    cells: Cells,
-    saturation: float,
-    start: PairFit | None = None,
-    *,
-    headroom: tuple[float, float] = (HEADROOM, HEADROOM_DEVIATION),
+    cells: Cells, saturation: float, start: PairFit | None = None, *, headroom: tuple[float, float] = HEADROOM
 ) -> PairFit:
     """Return the response and matrix that explain cells.
 
