@@ -9,9 +9,8 @@ blocks        blocks of pixels, and the most informative of them
 curve_model   the responses to choose from: EMoR plus splines
 robust        the robust least squares that stacks and raw pairs share
 solver        response, exposures and irradiances of a stack
-measurement   start, fit, and the irradiance of white; frames and samples that do not fit are left out
+measurement   start, fit, and the irradiance of white, without what does not fit; how far shape and scale may be off
 checks        reasons to refuse a stack, and doubts
-uncertainty   how far shape and scale may be off
 
 measured      the results of both
 raw_pairs     a response from raw files and their JPEGs; its packages are optional, so nothing here imports it by itself

@@ -25,11 +25,9 @@ WHITE_MARGIN = 0.5
 #: Fraction of white pixels from which on a block is white, and above which it is partly white.
 ALL_WHITE, PARTLY_WHITE = 0.98, 0.03
 
-#: 8-bit code below which brightness is not used: black level and clipping change it there.
-DARKEST_CODE = 5
-
-#: Deviations are multiplied by 1 + (this 8-bit code / code)^2, for the same reason: twice at this code.
-DARK_CODE = 10
+#: 8-bit code below which brightness is not used, because black level and clipping change it there; and the one at which
+#: deviations are doubled for the same reason: they are multiplied by 1 + (DARK_CODE / code)^2.
+DARKEST_CODE, DARK_CODE = 5, 10
 
 #: Standard deviation of a block's mean, in 8-bit codes: rounding, JPEG; and the part of the spread within the block.
 CODE_NOISE, SPREAD_NOISE = 0.4, 0.15

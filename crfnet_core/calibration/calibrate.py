@@ -13,9 +13,8 @@ from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
-from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
+from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure, uncertainty_of
 from crfnet_core.calibration.robust import rms_codes
-from crfnet_core.calibration.uncertainty import uncertainty_of
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
 from crfnet_core.response.curve import ResponseCurve
@@ -83,8 +82,9 @@ def calibrate_stack(
     checks.check_seen(white * every.brightness[every.is_used])
     readings = _readings(exposures, frames[0])
     labels, measurement, other = _measured(every, readings)
-    names = [frame.path.name for frame in frames]
-    checks.check_measurement(measurement, names, white=white)
+    names = np.array([frame.path.name for frame in frames])
+    used, left_out = names[measurement.frames].tolist(), names[~measurement.frames].tolist()
+    checks.check_measurement(measurement, used, left_out, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
@@ -99,7 +99,7 @@ def calibrate_stack(
         frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=checks.notices_of(measurement, names, exposures, white=white),
+        warnings=checks.notices_of(measurement, used, left_out, exposures, white=white),
     )
 
 

@@ -21,24 +21,19 @@ from crfnet_core.types import Float64Array
 #: Stops between two neighboring exposures beyond which hardly a surface is seen between black and white in both.
 LARGEST_STEP = 6.0
 
-#: Largest difference in stops between a frame's exposure and its label.
-MOST_OFFSET = 0.3
+#: Difference in stops between a frame's exposure and its label, and fraction of samples that fit in no way: the largest
+#: that are not refused, and the least that are worth a notice.
+MOST_OFFSET, MOST_OUTLIERS, NOTABLE_OFFSET, NOTABLE_OUTLIERS = 0.3, 0.3, 0.1, 0.1
 
-#: Offset in stops from its label, and fraction of samples left out, that are worth a notice.
-NOTABLE_OFFSET, NOTABLE_OUTLIERS = 0.1, 0.1
-
-#: Largest root mean square residual in 8-bit codes, and largest fraction of samples that fit in no way.
-MOST_RESIDUAL, MOST_OUTLIERS = 2.5, 0.3
+#: Largest root mean square residual in 8-bit codes.
+MOST_RESIDUAL = 2.5
 
 #: Largest E_est between a measured response and the nearest known one.
 MOST_UNKNOWN = 2.0
 
 #: If nothing moved, blocks of equal code in one frame are equal in the next, whatever curve each was rendered with.
-#: From this scatter on, in 8-bit codes, something has moved.
-MOST_SCATTER = 6.0
-
-#: Levels that blocks count as equal within.
-EQUAL_LEVELS = 48
+#: The scatter in 8-bit codes from which on something has moved, and the levels within which blocks count as equal.
+MOST_SCATTER, EQUAL_LEVELS = 6.0, 48
 
 #: Parts that the codes are divided into, and how many of them have to be seen.
 CODE_BINS, LEAST_BINS = 28, 0.5
@@ -69,9 +64,11 @@ def check_seen(brightness: Float64Array) -> None:
         raise CalibrationError("codes_unseen", part=part, first=FIRST_SHAPE_CODE, last=LAST_SHAPE_CODE)
 
 
-def check_measurement(measurement: Measurement, names: Sequence[str], *, white: float) -> None:
-    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response."""
-    used, left_out = _names(measurement, names)
+def check_measurement(measurement: Measurement, used: Sequence[str], left_out: Sequence[str], *, white: float) -> None:
+    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response.
+
+    `used` and `left_out` are the names of frames.
+    """
     residual = white * rms_codes(measurement.fit.residual)
     is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
     if is_moved or (residual > MOST_RESIDUAL and scatter(measurement.seen, measurement.exposures) > MOST_SCATTER):
@@ -88,10 +85,9 @@ def check_measurement(measurement: Measurement, names: Sequence[str], *, white: 
 
 
 def notices_of(
-    measurement: Measurement, names: Sequence[str], exposures: Exposures, *, white: float
+    measurement: Measurement, used: Sequence[str], left_out: Sequence[str], exposures: Exposures, *, white: float
 ) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    used, left_out = _names(measurement, names)
     notices = [Notice("frame_unfit", {"name": name}) for name in left_out]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
     notices += [Notice("frame_off", {"name": name, "off": off}) for name, off in offsets if abs(off) > NOTABLE_OFFSET]
@@ -144,9 +140,3 @@ def off_trend(measurement: Measurement) -> Float64Array:
     slope = np.median((offsets[second] - offsets[first])[apart] / distance[apart])
     rest = offsets - slope * measurement.exposures
     return np.asarray(rest - np.median(rest), dtype=np.float64)
-
-
-def _names(measurement: Measurement, names: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return the names of the frames that are used, and of the others."""
-    frames = list(zip(names, measurement.frames, strict=True))
-    return [name for name, is_used in frames if is_used], [name for name, is_used in frames if not is_used]

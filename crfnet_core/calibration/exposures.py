@@ -35,11 +35,8 @@ class ExposureLabel:
     @classmethod
     def from_header(cls, header: Any) -> ExposureLabel:
         """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`."""
-        return cls(
-            seconds=_positive(header, "ExposureTime"),
-            f_number=_positive(header, "FNumber"),
-            iso=_positive(header, "Exif:PhotographicSensitivity"),
-        )
+        names = ("ExposureTime", "FNumber", "Exif:PhotographicSensitivity")
+        return cls(*(_positive(header, name) for name in names))
 
 
 @dataclass(frozen=True, eq=False)

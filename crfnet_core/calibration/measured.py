@@ -13,6 +13,9 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.types import Float64Array
 
+#: Part of the difference between the channels' own responses that counts: they have a response in common.
+CHANNEL_PART = 0.5
+
 
 @dataclass(frozen=True)
 class Uncertainty:

@@ -1,19 +1,23 @@
-"""From observations to an anchored response; frames and samples that do not fit are left out.
+"""From observations to an anchored response, and how far it may be off.
 
-Start, fit, and the irradiance at which the codes reach white, which sets the scale of the response (Eq. C.3).
+Start, fit, and the irradiance at which the codes reach white, which sets the scale of the response (Eq. C.3). Frames
+and samples that do not fit are left out. The uncertainty is in stops, of the shape and of the scale (Eq. C.4 and C.5).
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from crfnet_core.calibration.blocks import PARTLY_WHITE, Observations, pick_blocks
-from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.frames import LEAST_FRAMES
+from crfnet_core.calibration.measured import CHANNEL_PART, Uncertainty
 from crfnet_core.calibration.robust import rms_codes
-from crfnet_core.calibration.solver import StackFit, fit_stack, rough_irradiance
+from crfnet_core.calibration.solver import TIME_DEVIATION, StackFit, fit_stack, rough_irradiance
 from crfnet_core.errors import CalibrationError, beside_limits
 from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
 from crfnet_core.types import BoolArray, Float64Array
 
 #: Fits from different starts.
@@ -34,20 +38,20 @@ OUTLIER = 5.0
 #: 8-bit codes from which the crossing is extrapolated in a straight line, and through which the parabola leads.
 LINE_FROM, PARABOLA_FROM, LAST_CODE, WHITE_CODE = 252, 240, 254, 254.5
 
-#: Samples that have to be white in one frame and measured in another for the crossing to be known.
-LEAST_CROSSINGS = 30
-
-#: Fraction of the samples, the flattest, that the crossing is looked for in.
-FLATTEST = 0.5
+#: Samples that have to be white in one frame and measured in another for the crossing to be known, and the fraction of
+#: these, the flattest, that it is looked for in.
+LEAST_CROSSINGS, FLATTEST = 30, 0.5
 
 #: Stops below the crossing in which the fraction of white pixels is taken, and the fraction that noise makes there.
 BELOW, NOISE_BELOW = 0.5, 0.02
 
-#: Standard deviation in stops of the anchor where its methods agree: the end of a response is seen in steps of a code.
-LEAST_DEVIATION = 0.02
+#: Standard deviation in stops of the anchor where its methods agree (the end of a response is seen in steps of a code),
+#: and where no frame reaches white (the end comes from known responses).
+LEAST_DEVIATION, UNSEEN_DEVIATION = 0.02, 0.4
 
-#: Standard deviation in stops where no frame reaches white: the end comes from known responses.
-UNSEEN_DEVIATION = 0.4
+#: The rest in stops where nothing disagrees (blocks are not flat, JPEG, the model), and the least samples of a channel
+#: for a response of its own.
+LEAST_SHAPE, LEAST_SCALE, LEAST_SAMPLES = 0.01, 0.02, 60
 
 
 @dataclass(frozen=True)
@@ -166,3 +170,49 @@ def _worst_frame(fit: StackFit) -> int | None:
     worst = int(residuals.argmax())
     others = float(np.median(np.delete(residuals, worst)))
     return worst if residuals[worst] > max(WORST_FRAME, WORSE_THAN_OTHERS * others) else None
+
+
+def uncertainty_of(measurement: Measurement, other_labels: ResponseCurve | None, *, white: float) -> Uncertainty:
+    """Return how far a measured response may be off, at the codes of the file.
+
+    `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
+    exposure labels, if there is one.
+    """
+    even = measurement.seen.block % 2 == 0
+    parts = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
+    alone = []
+    for channel, offsets in enumerate(measurement.fit.offsets.T):  # the exposures that all channels found for it
+        part = measurement.seen.subset(measurement.seen.channel == channel)
+        gray = replace(part, channel=np.zeros_like(part.channel))
+        alone.append(_curve_of(gray, measurement.exposures + offsets, measurement))
+    others = [] if other_labels is None else [other_labels]
+    curve, first, second = (in_file_codes(each, white) for each in (measurement.curve, *parts))
+
+    def disagreements(error: Callable[[ResponseCurve, ResponseCurve], float]) -> dict[str, float]:
+        """Return how far responses are apart that should be one."""
+        return {
+            "sampling": abs(error(first, second)) / 2,
+            "channels": CHANNEL_PART * _rms([error(curve, in_file_codes(each, white)) for each in alone]),
+            "labels": 0.5 * _rms([error(curve, in_file_codes(each, white)) for each in others]),
+        }
+
+    codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
+    shape, scale = measurement.fit.deviations(codes)
+    trend = TIME_DEVIATION / np.linalg.norm(measurement.exposures - measurement.exposures.mean())
+    times = float(trend * np.log2(measurement.curve.inverse(codes)).std())
+    return Uncertainty(
+        {"posterior": shape, **disagreements(shape_error), "times": times, "least": LEAST_SHAPE},
+        {"posterior": scale, **disagreements(scale_error), "white": measurement.anchor.deviation, "least": LEAST_SCALE},
+    )
+
+
+def _curve_of(seen: Observations, exposures: Float64Array, measurement: Measurement) -> ResponseCurve:
+    """Return the response of a part of the samples, or of all if the part is too small."""
+    if len(seen.block) < LEAST_SAMPLES:
+        return measurement.curve
+    return fit_and_anchor(seen, exposures, measurement.fit.weights, rounds=1).curve
+
+
+def _rms(values: Sequence[float]) -> float:
+    """Return the root mean square, 0 of nothing."""
+    return float(np.linalg.norm(values) / np.sqrt(max(len(values), 1)))

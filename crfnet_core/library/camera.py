@@ -26,10 +26,8 @@ class CameraSettings:
     iso: tuple[int, ...] = ()  # sensitivities, sorted
 
     @classmethod
-    def from_metadata(cls, metadata: FileMetadata | None) -> CameraSettings:
+    def from_metadata(cls, metadata: FileMetadata) -> CameraSettings:
         """Return the settings in a file's metadata."""
-        if metadata is None:
-            return cls()
         iso = () if metadata.iso is None else (metadata.iso,)
         return cls(metadata.make, metadata.model, metadata.software, iso)
 

@@ -62,19 +62,18 @@ def read_calibration(path: Path, name: str | None = None) -> Camera:
     """
     name, document = checked_name(path.stem if name is None else name), _read_object(path, kind="calibration")
     try:
-        camera = document["camera"]
         used = [frame for frame in document["frames"] if frame["used"]]
-        iso = _sensitivities({round(frame["iso"]) for frame in used if frame["iso"]})
-        make, model, firmware = _texts(camera[entry] for entry in ("make", "model", "firmware"))
-        return Camera(
-            name=name,
-            curve=ResponseCurve.restored(document["response"]["brightness"]),
-            shape_stops=_deviation(document["shape_uncertainty_stops"]),
-            scale_stops=_deviation(document["scale_uncertainty_stops"]),
-            source=_source(len(used), document),
-            settings=CameraSettings(make, model, firmware, iso),
-            warnings=_texts(document["warnings"]),
-        )
+        entry = {
+            **document["camera"],
+            "brightness": ResponseCurve.restored(document["response"]["brightness"]).brightness,
+            "software": document["camera"]["firmware"],
+            "shape_stops": document["shape_uncertainty_stops"],
+            "scale_stops": document["scale_uncertainty_stops"],
+            "source": _source(len(used), document),
+            "iso": {round(frame["iso"]) for frame in used if frame["iso"]},
+            "warnings": document["warnings"],
+        }
+        return _measured(name, entry)
     except _DAMAGES as problem:
         raise CameraError("damaged_calibration", path=path, reason=problem) from None
 

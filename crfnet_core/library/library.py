@@ -73,9 +73,8 @@ class CameraLibrary:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as problem:
-            raise CameraError(
-                "camera_folder", folder=self.folder, reason=problem.strerror, variable=DATA_VARIABLE
-            ) from None
+            reason = problem.strerror
+            raise CameraError("camera_folder", folder=self.folder, reason=reason, variable=DATA_VARIABLE) from None
         atomic_write_text(path, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
         return path
 

@@ -36,10 +36,8 @@ def draw_calibration(path: Path, calibration: Measured) -> None:
     """Write the picture of a calibration as PNG, or raise PlateError; the same input gives the same bytes."""
     with sheet.sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
-        _draw_curve(
-            figure.add_axes((0.058, sheet.BOTTOM, sheet.HEIGHT * sheet.SIZE[1] / sheet.SIZE[0], sheet.HEIGHT)),
-            calibration,
-        )
+        width = sheet.HEIGHT * sheet.SIZE[1] / sheet.SIZE[0]
+        _draw_curve(figure.add_axes((0.058, sheet.BOTTOM, width, sheet.HEIGHT)), calibration)
         upper, lower = 0.42, sheet.HEIGHT - 0.42 - 0.09
         points = figure.add_axes((0.56, sheet.BOTTOM + sheet.HEIGHT - upper, 0.412, upper))
         if isinstance(calibration, PairCalibration):
@@ -106,9 +104,9 @@ def _draw_residuals(axes: Axes, calibration: Measured, column: int, colors: Floa
     axes.scatter(cause, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
     if isinstance(calibration, PairCalibration):
         parts = np.array_split(cause.argsort(), 8)
-        axes.plot(
-            [np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=sheet.INK
-        )
+        medians = [[np.median(values[part]) for part in parts] for values in (cause, residual)]
+        axes.plot(*medians, color=sheet.INK)
     axes.axhline(0, color=sheet.INK, linewidth=1)
-    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
+    limits = (DARKEST, 0.5) if column == 0 else None
+    axes.set(xlim=limits, ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
     sheet.plain(axes)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageEnhance, ImageFilter
+from PIL import ExifTags, Image, ImageEnhance, ImageFilter
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 from crfnet_core.colorimetry import ADOBE_RGB, REC709, Primaries, conversion_matrix
@@ -110,7 +110,9 @@ def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurv
         return
     image = Image.open(jpeg).convert("RGB")
     if kind == "edited" and rng.uniform() < 0.5:  # by a program that leaves its name
-        image.save(jpeg, quality=92, exif=_software_tag("Adobe Photoshop Lightroom Classic 13.0"))
+        exif = Image.Exif()
+        exif[ExifTags.Base.Software] = "Adobe Photoshop Lightroom Classic 13.0"
+        image.save(jpeg, quality=92, exif=exif)
     else:
         edited(kind, image, rng).save(jpeg, quality=92)
 
@@ -138,10 +140,3 @@ def edited(kind: str, image: Image.Image, rng: np.random.Generator) -> Image.Ima
     else:  # a gradient filter
         codes = codes * np.linspace(rng.uniform(0.4, 0.7), 1.2, image.height)[:, None, None]
     return Image.fromarray(np.clip(codes, 0, 255).astype(np.uint8))
-
-
-def _software_tag(name: str) -> Image.Exif:
-    """Return EXIF that names a program."""
-    exif = Image.Exif()
-    exif[305] = name
-    return exif

@@ -16,14 +16,11 @@ OUTLIER = 6.0
 FAINT = 0.25
 
 #: Prior standard deviations: local tone mapping, vignetting at the corner in stops, a gradient from the center to a
-#: corner in stops, a shot's exposure in stops.
-LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION = 0.2, 0.5, 0.1, 0.1
+#: corner in stops, a shot's exposure in stops; and the entries of the matrix, for channels of which nothing counts.
+LOCAL_DEVIATION, CORNER_DEVIATION, TILT_DEVIATION, SHOT_DEVIATION, MATRIX_DEVIATION = 0.2, 0.5, 0.1, 0.1, 100.0
 
 #: Stops by which raw saturation of white lies above the JPEG's white: the prior mean and its standard deviation.
-HEADROOM, HEADROOM_DEVIATION = 0.2, 0.3
-
-#: The same of the entries of the matrix, where nothing of a channel counts.
-MATRIX_DEVIATION = 100.0
+HEADROOM = (0.2, 0.3)
 
 #: Rounds of reweighting, and those that do not yet leave outliers out.
 ROUNDS, LENIENT = 5, 2
@@ -48,11 +45,7 @@ class PairFit(FittedResponse):
 
 
 def fit_pairs(
-    cells: Cells,
-    saturation: float,
-    start: PairFit | None = None,
-    *,
-    headroom: tuple[float, float] = (HEADROOM, HEADROOM_DEVIATION),
+    cells: Cells, saturation: float, start: PairFit | None = None, *, headroom: tuple[float, float] = HEADROOM
 ) -> PairFit:
     """Return the response and matrix that explain cells.
 

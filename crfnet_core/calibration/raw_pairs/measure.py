@@ -9,12 +9,11 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import members_of_bins
 from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
-from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
+from crfnet_core.calibration.measured import CHANNEL_PART, PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
 from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs
 from crfnet_core.calibration.robust import rms_codes
-from crfnet_core.calibration.uncertainty import CHANNEL_PART
 from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
@@ -150,19 +149,15 @@ def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteB
     halves = [fit_pairs(cells.subset(cells.tile == half), saturation, fit).response() for half in (0, 1)]
     codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
     shape, scale = fit.deviations(codes)
-    end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0]))
+    channels, white = CHANNEL_PART * _between_channels(cells, fit), WHITE_DEVIATIONS[basis]
+    end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0])) / 2
     return Uncertainty(
-        shape={
-            "posterior": shape,
-            "sampling": shape_error(*halves) / 2,
-            "channels": CHANNEL_PART * _between_channels(cells, fit),
-            "least": LEAST_SHAPE,
-        },
-        scale={
+        {"posterior": shape, "sampling": shape_error(*halves) / 2, "channels": channels, "least": LEAST_SHAPE},
+        {
             "posterior": scale,
             "sampling": abs(scale_error(*halves)) / 2,
-            "white": WHITE_DEVIATIONS[basis],
-            "end": end / 2,
+            "white": white,
+            "end": end,
             "least": LEAST_SCALE,
         },
     )

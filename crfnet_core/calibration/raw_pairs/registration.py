@@ -12,11 +12,9 @@ from scipy.optimize import least_squares
 from crfnet_core.calibration.alignment import rank_image
 from crfnet_core.types import Float32Array, Float64Array
 
-#: Width and height in pixels at which turns are compared, and widths at which the fit is made, one after the other.
-SMALL, WIDTHS = (48, 36), (160, 400)
-
-#: Blur in pixels at the first width, which widens the reach of the fit, and at the others.
-BLURS = (1.5, 0.6)
+#: Width and height in pixels at which turns are compared; widths at which the fit is made, one after the other; and the
+#: blur in pixels at each: the first widens the reach of the fit.
+SMALL, WIDTHS, BLURS = (48, 36), (160, 400), (1.5, 0.6)
 
 #: Parts of the raw picture's width that the JPEG may show, to begin with.
 STARTS = (0.99, 0.96)

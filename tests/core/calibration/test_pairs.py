@@ -63,13 +63,10 @@ def test_one_pair_gives_the_shape_of_the_response(measured, true_response):
     assert shape_error(true_response, measured.curve) < 2 * measured.uncertainty.shape_stops
 
 
-def test_vignetting_correction_is_found_and_no_local_tones(measured):
+def test_vignetting_and_the_matrix_are_found_and_no_local_tones(measured):
+    """Rows are relative to their sums, because the scale is the exposure's."""
     assert measured.corner == pytest.approx(0.5, abs=0.1)
     assert abs(measured.local) < 0.03
-
-
-def test_the_matrix_leads_from_the_sensors_colors_to_the_jpegs(measured):
-    """Rows are relative to their sums, because the scale is the exposure's."""
     to_camera = CAMERAS["one"] @ XYZ * LIGHT
     true = np.linalg.inv(to_camera / to_camera.sum(axis=1, keepdims=True))
     found = measured.matrix / measured.matrix.sum(axis=1, keepdims=True)
@@ -93,10 +90,6 @@ def test_weak_local_tone_mapping_is_fitted_and_said(pair, true_response):
     assert found.local == pytest.approx(-0.06, abs=0.025)
     assert "local_fitted" in [warning.code for warning in found.warnings]
     assert shape_error(true_response, found.curve) < SHAPE
-
-
-def test_strong_local_tone_mapping_is_refused(pair):
-    assert refused(pair(local=0.15)) == "local_tones"
 
 
 @pytest.mark.parametrize(
@@ -129,11 +122,9 @@ def test_a_shot_without_flat_places_is_named(pair, scene):
     assert (problem.value.code, problem.value.facts["path"].name) == ("few_cells", "second.dng")
 
 
-def test_a_dark_picture_is_refused(pair, scene):
+def test_strong_local_tone_mapping_a_dark_picture_and_a_raw_file_alone_are_refused(pair, scene, tmp_path):
+    assert refused(pair(local=0.15)) == "local_tones"
     assert refused(pair(shown=np.append(scene, np.full_like(scene[:9], 60 * scene.max()), axis=0))) == "pair_dark"
-
-
-def test_a_raw_file_without_a_jpeg_is_refused(tmp_path, scene):
     assert refused([write_dng(tmp_path / "alone.dng", scene)]) == "raw_without_jpeg"
 
 
