@@ -11,17 +11,7 @@ import bpy
 
 from ..plates import COMPOSITOR, SHADER, SHOWN, Datablock, datablock_of_node
 from .building import GAP, IS_BLENDER_5, WIDTH, activate
-from .links import (
-    LOOK,
-    PLATE,
-    groups_of,
-    holds_group_of,
-    neighbors_behind,
-    nodes_behind,
-    nodes_of,
-    output_of,
-    plates_and_groups,
-)
+from .links import LOOK, PLATE, groups_of, holds_group_of, key_nodes, nodes_behind, nodes_of, output_of
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor or texture, or a compositor's Image node.
@@ -213,7 +203,7 @@ def _link_alpha(source: bpy.types.Node, plate: Datablock) -> None:
 
 def _make_room(source: bpy.types.Node, node: bpy.types.Node) -> None:
     """Move the nodes behind a plate's node to the right, so that a new node has room between them."""
-    behind = [other for other in neighbors_behind(source) if other != node]
+    behind = [other for other in nodes_behind(source) if other != node and other.id_data == node.id_data]
     nearest = min((other.location_absolute.x for other in behind), default=None)
     if nearest is None:
         return
@@ -254,7 +244,7 @@ def _link_on(tree: bpy.types.NodeTree, source: bpy.types.Node, wanted: PlateNode
 
 def _sources(tree: bpy.types.NodeTree, plate: Datablock) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show a plate or its code values."""
-    return [node for node in plates_and_groups(tree) if datablock_of_node(node) == plate]
+    return [node for node in key_nodes(tree) if datablock_of_node(node) == plate]
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:

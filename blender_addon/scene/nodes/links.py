@@ -59,7 +59,7 @@ def _asked_once(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 
 @_asked_once
-def plates_and_groups(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
+def key_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
     """Return the nodes of a tree that show an image or clip, or hold a node group."""
     return [node for node in tree.nodes if node.type == "GROUP" or shown_by_node(node) is not None]
 
@@ -90,11 +90,6 @@ def nodes_behind(node: bpy.types.Node) -> list[bpy.types.Node]:
     return [other for other in dict.fromkeys(other for other, _ in steps) if other != node]
 
 
-def neighbors_behind(node: bpy.types.Node) -> list[bpy.types.Node]:
-    """Return the nodes of the same tree that the outputs of a node lead to."""
-    return [other for other in nodes_behind(node) if other.id_data == node.id_data]
-
-
 def node_trees() -> Iterator[bpy.types.NodeTree]:
     """Yield every compositor and shader tree of the file, node groups included; shaders once they have a group."""
     yield from (tree for tree in bpy.data.node_groups if tree.bl_idname in NODE_TREES)
@@ -123,7 +118,7 @@ def _trees_in(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.NodeTree]:
     """Yield a tree, unless it is None, and the node groups in it."""
     if tree is not None:
         yield tree
-        for inner in {node.node_tree for node in plates_and_groups(tree) if node.type == "GROUP"}:
+        for inner in {node.node_tree for node in key_nodes(tree) if node.type == "GROUP"}:
             yield from _trees_in(inner)
 
 
@@ -134,12 +129,12 @@ def has_groups() -> bool:
 
 def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
     """Yield the nodes of the file that show a plate or its code values."""
-    yield from (node for tree in node_trees() for node in plates_and_groups(tree) if datablock_of_node(node) == plate)
+    yield from (node for tree in node_trees() for node in key_nodes(tree) if datablock_of_node(node) == plate)
 
 
 def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> list[bpy.types.Node]:
     """Return the nodes that hold a plate's node group, or look, and are not those of other scenes only."""
-    return [node for tree in trees_here(scene) for node in plates_and_groups(tree) if holds_group_of(node, plate, name)]
+    return [node for tree in trees_here(scene) for node in key_nodes(tree) if holds_group_of(node, plate, name)]
 
 
 def holds_group_of(node: bpy.types.Node, plate: Datablock, name: str = PLATE) -> bool:
@@ -209,5 +204,5 @@ def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node
         yield from ((inner, _Way.ENTERED) for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
     if node.type == "GROUP_OUTPUT" and way is not _Way.ENTERED:
         for tree in node_trees():
-            holders = (outer for outer in plates_and_groups(tree) if getattr(outer, "node_tree", 0) == node.id_data)
+            holders = (outer for outer in key_nodes(tree) if getattr(outer, "node_tree", 0) == node.id_data)
             yield from ((outer, _Way.LEFT) for outer in holders)
