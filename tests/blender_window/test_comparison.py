@@ -33,6 +33,8 @@ class TestComparison(WindowTest):
             artist.wait(lambda: artist.value(SHOWN) == name, "the plate is shown again")
             artist.settle()
             self.assert_view(artist, view)
+        artist.screen.key("shift+z")  # over the picture, where it was settled
+        artist.wait(lambda: artist.value(SHOWN) != name, "the key shows the linear plate, too")
         self.assertEqual(artist.value("[image.name for image in bpy.data.images if image.is_dirty]"), [])
 
     def test_the_second_switch_to_a_plate_of_12_megapixels_takes_a_tenth_of_a_second(self):
