@@ -92,7 +92,11 @@ def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> dict[str, Pa
     build = own_wheel.name.split("-")[1]
     text = re.sub(rf'(^version = "|/crfnet-){re.escape(version)}(?=["-])', rf"\g<1>{build}", text, flags=re.MULTILINE)
     out.mkdir(parents=True, exist_ok=True)
-    zips = {name: out / f"{tomllib.loads(text)['id']}-{version}-{name.replace('-', '_')}.zip" for name in names}
+    zips = {
+        name: out / f"{tomllib.loads(text)['id']}-{version}-{name.replace('-', '_')}.zip"
+        for name in ZIPS
+        if name in names
+    }
     for name, path in zips.items():
         manifest = platform_manifest(text, ZIPS[name])
         wheel_names = [Path(wheel).name for wheel in tomllib.loads(manifest)["wheels"]]

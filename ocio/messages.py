@@ -35,7 +35,7 @@ SENTENCES: Mapping[str, str] = {
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
     "no_placeholder": "{path}: is one name for {count} frames; give a name with a placeholder, such as plate.%04d.exr",
-    "no_such_frames": "{path}: the frames that exist are {frames}; check the name and the frames",
+    "no_such_frames": "{path}: frames that exist: {frames}; check the name and the frames",
     "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
     " plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",

@@ -64,7 +64,7 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
         button.data_path, button.value = "window_manager.clipboard", ffmpeg_filter[0]
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops) and not is_doubted:
-        column.label(text=f"Expected error {stops:.2f} stop")
+        draw_text(column, f"Expected error {stops:.2f} stop", letters)
     box.template_icon(icon_value=curve_icon(datablock), scale=_SMALL)
     if context.space_data.type == "IMAGE_EDITOR":
         is_after = plates.compared_plate(context.space_data.image) is not None

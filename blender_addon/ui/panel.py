@@ -51,6 +51,8 @@ class ResponsePanel(bpy.types.Panel):
         if datablock is None:
             return
         is_stored = stored_estimate.is_stored(datablock)
+        if context.space_data.type == "NODE_EDITOR":  # which may show several plates
+            layout.label(text=datablock.name, icon="IMAGE_DATA")
         if is_stored:
             draw_estimate(layout, context, datablock)
             with links.trees_at_rest():
@@ -112,20 +114,23 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
     row.enabled = running.current is None
     row.prop(settings, "apply", expand=True)
     is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
-    text, icon, state, state_icon = ("Apply", "CHECKMARK", "", "NONE")
+    text, icon, state, state_icon = "Apply", "CHECKMARK", "", "NONE"
     if not is_trusted:
-        text, icon, state = "Apply Anyway", "ERROR", "The plate was not changed."
+        text, icon = "Apply Anyway", "ERROR"
     if has_been := is_applied(datablock):
         text, icon, state, state_icon = "Apply Again", "FILE_REFRESH", "Applied with these settings.", "CHECKMARK"
     elif is_to_be_applied(datablock):
         state, state_icon = "Changed settings count once they are applied.", "INFO"
-    layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
+    button = layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon)
+    button.anyway = not is_trusted
+    if has_been and settings.apply not in WITHOUT_FILES:
+        button.overwrite = True  # the files are its own
     draw_text(layout, state, letters, icon=state_icon)
     if has_been and settings.apply == "NODES":
         draw_text(layout, _place(context, datablock), letters, icon="BLANK1")
     _draw_settings(layout, context, datablock)
     if has_been and settings.apply != "EXPORT":
-        draw_view(layout, context, has_nodes=settings.apply == "NODES")
+        draw_view(layout, context, is_composited=bool(_place(context, datablock)))
 
 
 def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:

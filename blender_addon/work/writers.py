@@ -73,7 +73,8 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
         return
     if job.output.mode is ApplyMode.BAKE and job.plate.frame_count:
         raise AddonError(
-            f"{job.plate.name}: movies are not baked; choose Nodes and render, or open its frames as an image sequence"
+            f"{job.plate.name}: movies are not baked; choose Nodes and render, or open the movie's frames as an image"
+            " sequence"
         )
     folder = _folder(job)
     check_folder(folder)

@@ -10,7 +10,7 @@ from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed
 from tests.helpers.reference_exr import read_reference
 
-from .helpers import apply, bpy, load, pixels_of, scene_tree
+from .helpers import apply, bpy, drawn_in, load, pixels_of, scene_tree
 from .helpers import estimate as run
 
 FLOAT, HALF = 1e-6, 2**-11
@@ -27,9 +27,13 @@ def test_bake(image, plate_file, codes, estimate, depth, limit):
     assert np.abs(pixels_of(baked)[..., :3] - expected).max() < 2 * limit
 
 
-def test_export(image, plate_file, tmp_path, codes, estimate):
+def test_export(image, plate_file, tmp_path, codes, estimate, in_editor):
     folder = tmp_path / "look"
+    image.camera_response_settings.apply, image.camera_response_settings.folder = "EXPORT", str(folder)
     run(image, "EXPORT", folder=str(folder))
+    assert ("set", "overwrite", True) in drawn_in(image, in_editor)  # of Apply Again
+    image.camera_response_settings.folder = str(tmp_path)
+    assert ("set", "overwrite", True) not in drawn_in(image, in_editor)
     assert set(listed(folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
     expected = estimate(plate_file).curve.inverse(codes / 255)
     for suffix in WRITERS:

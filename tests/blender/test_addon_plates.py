@@ -71,7 +71,7 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
         assert not bpy.ops.crf.read_as_sequence.poll()
         bpy.context.scene.frame_set(1)
         assert Path(image.filepath_from_user(image_user=space.image_user)).name == "shot.1001.png"
-    assert image.source == "SEQUENCE"
+    assert (image.source, image.name) == ("SEQUENCE", "shot.1001.png")
     assert plates.obstacle(image) == ""
     assert frames_of(plates.plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
 
@@ -112,7 +112,7 @@ def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("shot.0001.png", r"shot\.####\.png: there are none of this name"),
+        ("shot.0001.png", r"shot\.####\.png: frames that exist: none"),
         ("still.png", r"still\.png: does not exist; .*; find it with File, External Data\s*$"),
     ],
 )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import bpy
@@ -152,6 +153,7 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
         """Change the source of the image, and the timing where it is shown: at first, that would show no frame."""
         image, space = plates.chosen_datablock(context), context.space_data
         image.source = "SEQUENCE"
+        image.name = Path(image.filepath).name
         user = space.image_user if space.type == "IMAGE_EDITOR" else space.edit_tree.nodes.active
         if hasattr(user, "frame_duration"):  # not the plate's node group
             with suppress(*expected_errors()):  # reported where a response is estimated

@@ -57,8 +57,8 @@ class CRF_OT_standard_view(bpy.types.Operator):
         return {"FINISHED"} if color_management.set_standard_view(context.scene) else {"CANCELLED"}
 
 
-def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context, *, has_nodes: bool) -> None:
-    """Draw that the scene's view transform darkens the highlights of a plate, and the buttons that change it."""
+def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context, *, is_composited: bool) -> None:
+    """Draw that the view transform darkens the highlights of a plate, and the buttons for it; the look is for comps."""
     view = color_management.darker_view(context.scene)
     if not view:
         return
@@ -67,7 +67,7 @@ def draw_view(layout: bpy.types.UILayout, context: bpy.types.Context, *, has_nod
     if color_management.has_standard_view(context.scene):
         column = box.column(align=True)
         column.operator(CRF_OT_standard_view.bl_idname, icon="HIDE_OFF")
-        if has_nodes:
+        if is_composited:
             column.operator(CRF_OT_add_look.bl_idname, text="Match the Photograph", icon="CAMERA_DATA")
 
 

@@ -155,7 +155,7 @@ def _what_was_done(source: plates.Datablock) -> str:
     if stored_estimate.verdict(source) == stored_estimate.DO_NOT_TRUST:
         return "it is stored only, because it is not to be trusted"
     is_baked = source.camera_response_settings.apply == "BAKE"
-    return "bake each with its own Apply" if is_baked else "it is applied as to this plate"
+    return "bake each with its own Apply" if is_baked else "it is applied as nodes"
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OtherPlate, CRF_OT_copy_response))
