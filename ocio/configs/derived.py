@@ -83,7 +83,8 @@ def _new_spaces(
         space = _free_space(base, look, names, lut_files)
         counters = [pattern for pattern in space.file_patterns if is_counter_name(pattern)]
         patterns = tuple(pattern for pattern in space.file_patterns if pattern not in counters)
-        spaces.append(replace(space, file_patterns=patterns))
+        linear = tuple(each for each in space.linear_patterns if ".#." in each or not is_counter_name(each))
+        spaces.append(replace(space, file_patterns=patterns, linear_patterns=linear))
         common += counters
     return spaces, common
 

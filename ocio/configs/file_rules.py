@@ -25,9 +25,8 @@ COUNTER_NAMES = (
 #: The most patterns of one rule: OpenColorIO's regular expressions fail with 4000.
 MOST_PATTERNS = 100
 
-#: Frame numbers at the end of a name: shot.0001. And the names of several frames, up to the number and behind it.
+#: Frame numbers at the end of a name: shot.0001.
 FRAME_NUMBER = re.compile(r"\.\d{2,}$")
-FRAME = re.compile(r"(.*?)(?:(?<=\.)[0-9]+|[0-9]{4,})(\.[^.]*)")
 
 
 def plate_pattern(name: str) -> str:
@@ -35,16 +34,6 @@ def plate_pattern(name: str) -> str:
     stem, dot, suffix = name.rpartition(".")
     stem = stem.replace("#", "?")
     return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
-
-
-def sequence_pattern(names: Sequence[str]) -> str:
-    """Return the pattern of file names that differ in the number of a frame alone, such as shot_#.jpg; else nothing.
-
-    The number stands at the end, behind a dot or with four digits at least: sh010.jpg and sh020.jpg are two shots.
-    """
-    frames = [FRAME.fullmatch(name.replace("#", "?")) for name in names]
-    patterns = {f"{frame[1]}#{frame[2]}" if frame else "" for frame in frames}
-    return patterns.pop() if len(patterns) == 1 < len(set(names)) else ""
 
 
 def linear_patterns(stem: str, names: Sequence[str] = (), plates: str = "") -> tuple[str, ...]:

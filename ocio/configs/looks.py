@@ -15,7 +15,7 @@ from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
 from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
-from .file_rules import MOST_PATTERNS, plate_pattern, sequence_pattern
+from .file_rules import MOST_PATTERNS, plate_pattern
 from .files import load_config, plate_exposure
 from .plate_color_space import PlateColorSpace
 from .reference_space import LINEAR_NAMES
@@ -58,12 +58,12 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
     folder = lut_file.parent
     if document:
         names = [MOVIE_FRAME.sub("", photo["name"]) for photo in document["photographs"]]
-        photo, frames = Path(names[0]), sequence_pattern(names)
+        photo, sequence = Path(names[0]), document.get("sequence", "")
         files = OutputFiles.named(folder, [photo])
         files = replace(files, linear=tuple(folder / name for name in document["files"]["linear"]))
         space = replace(
-            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document), file_pattern=frames),
-            file_patterns=(frames,) if frames else tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
+            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document), file_pattern=sequence),
+            file_patterns=tuple(dict.fromkeys([sequence] if sequence else map(plate_pattern, names)))[:MOST_PATTERNS],
             primaries=_primaries(document),
             linear_primaries=_linear_primaries(document),
         )
@@ -90,6 +90,7 @@ def _document(path: Path) -> dict[str, Any] | None:
         document = read_json(path)
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
+        names += [document["sequence"]] if "sequence" in document else []
         float(document["exposure"]["stops"])
         str(document["output_space"]["interop_id"])
         _primaries(document).to_xyz()

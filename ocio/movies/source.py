@@ -32,9 +32,15 @@ def find_source(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     return MovieFrames.find(path, frames) if is_movie(path) else find_frames(pattern, frames)
 
 
-def file_source(path: Path, frames: str | Iterable[int] | None = None) -> PlateSource:
-    """Return the frames of a movie, or any other file by itself, which `frames` does not concern."""
-    return MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
+def file_source(path: Path, frames: str | Iterable[int] | None = None, *, pattern: str = "") -> PlateSource:
+    """Return the frames of a movie, or any other file by itself, perhaps one of a sequence with a pattern."""
+    return MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,), pattern=pattern)
+
+
+def sequence_of(sources: Iterable[PlateSource]) -> str:
+    """Return the pattern of the sequence from which all sources are; empty if they are from several, or from none."""
+    patterns = {getattr(source, "pattern", "") for source in sources}
+    return patterns.pop() if len(patterns) == 1 else ""
 
 
 def movie_of(source: PlateSource) -> MovieStream | None:

@@ -15,6 +15,7 @@ Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the 
 called with (done, total); whatever it raises ends the step, which first removes its unfinished files.
 """
 
+from ..movies.source import sequence_of
 from ..plates.light import anchored_exposure
 from .calibrations import is_pairs, plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
@@ -34,4 +35,5 @@ from .run import run_batch
 __all__ = ["EstimateBatch", "FileEstimate", "LinearBatch", "OutputPlan", "PhotographRecord", "anchored_exposure"]
 __all__ += ["deliver", "deliver_estimate", "estimate_files", "estimated_light", "find_photographs", "is_pairs"]
 __all__ += ["load_camera_response", "photograph_sources", "plan_calibration"]
-__all__ += ["plan_outputs", "response_lut", "response_to_compare", "run_batch", "write_calibration"]
+__all__ += ["plan_outputs", "response_lut", "response_to_compare", "run_batch", "sequence_of"]
+__all__ += ["write_calibration"]

@@ -41,6 +41,7 @@ def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLigh
     document = estimate_document(estimated.estimate, [facts.entry for facts in estimated.photographs], files, light)
     document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
+    document |= {"sequence": plan.sequence} if plan.sequence else {}
     more: dict[Path, Callable[[Path], None]] = {
         files.report: lambda path: atomic_write_text(path, json_text(document), error=PlateError)
     }

@@ -85,13 +85,17 @@ def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list
     `frames` are the frames of a sequence or movie to choose from, as in `parse_frames`; all by default. Raise
     PlateError if there are no such frames or a single photograph has none, or a name leads to a folder or to nothing.
     """
-    paths: list[Path] = []
+    patterns: dict[Path, str] = {}
     for name in names:
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
         if is_single:
             _check_file(name)
-        paths += [name] if is_single or is_movie(name) else sample_frames(find_frames(name, frames))
-    return [file_source(path, frames) for path in unique(paths)]
+        if is_single or is_movie(name):
+            patterns[name] = ""
+        else:
+            sequence = find_frames(name, frames)
+            patterns |= dict.fromkeys(sample_frames(sequence), sequence.pattern)
+    return [file_source(path, frames, pattern=patterns[path]) for path in unique(patterns)]
 
 
 def _check_file(name: Path) -> None:

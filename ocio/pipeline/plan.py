@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..configs.file_rules import sequence_pattern
 from ..configs.files import load_config
 from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
@@ -22,6 +21,7 @@ class OutputPlan:
     plates: PlateOptions  # how linear plates are written; `overwrite` holds for every file
     space: PlateColorSpace | None = None  # without its exposure and primaries; None without a config
     lost_color_spaces: tuple[str, ...] = ()  # of other plates, in a config that is replaced
+    sequence: str = ""  # the names of all frames, if the photographs are some of a sequence, as in a file rule
 
     @property
     def targets(self) -> tuple[Path, ...]:
@@ -30,20 +30,22 @@ class OutputPlan:
         return (*self.files.luts, *self.files.forward, *config, *self.files.linear)
 
 
-def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
+def plan_outputs(
+    folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions, *, sequence: str = ""
+) -> OutputPlan:
     """Return which files are written for photographs of one response, after checking that they can be; create nothing.
 
-    Raise PlateError if a file cannot be written or would replace another, or a photograph, or two photographs would
-    have one linear plate; ConfigError if the color space cannot be in a config.
+    `sequence` is the pattern of the sequence from which they are: see `sequence_of`. Raise PlateError if a file cannot
+    be written or would replace another, or a photograph, or two photographs would have one linear plate; ConfigError if
+    the color space cannot be in a config.
     """
     files = OutputFiles.named(folder, photos, outputs)
     owners: dict[str, Path] = {}
     for target, photo in zip(files.linear, photos, strict=False):  # without linear plates, no pairs
         if (other := owners.setdefault(target.name.casefold(), photo)) != photo:
             raise PlateError("one_name", first=other, second=photo, name=target.name)
-    pattern = sequence_pattern([photo.name for photo in photos])
-    space = PlateColorSpace.from_outputs(files, photos[0], file_pattern=pattern)
-    return plan_files(files, photos, plates, space)
+    space = PlateColorSpace.from_outputs(files, photos[0], file_pattern=sequence)
+    return replace(plan_files(files, photos, plates, space), sequence=sequence)
 
 
 def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace) -> OutputPlan:

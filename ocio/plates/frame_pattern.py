@@ -41,6 +41,11 @@ class FramePattern:
                 return cls(path.parent, path.name[:start], _width(matches[0][0]), path.name[end:])
         return None
 
+    @property
+    def rule(self) -> str:
+        """The names of the files in a file rule, where `#` is any number and `?` any character: see `rule_regex`."""
+        return "#".join(re.sub(r"[#*?\\]", "?", part) for part in (self.prefix, self.suffix))
+
     def path(self, number: int) -> Path:
         """Return the file of a frame."""
         return self.folder / f"{self.prefix}{number:0{self.width}d}{self.suffix}"

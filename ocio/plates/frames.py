@@ -26,6 +26,7 @@ class FrameSequence:
     numbers: tuple[int, ...] = ()  # a single file has none
     missing: tuple[int, ...] = ()  # asked for, or between the first and the last, and without a file
     is_encoded: bool = False  # whether OpenEXR files that do not state their encoding hold encoded values
+    pattern: str = ""  # the names of all frames, as in a file rule; empty for a single file
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
         """Yield what reads each frame, for positions in `paths`: see `FrameSource`."""
@@ -57,7 +58,7 @@ def pattern_frames(
     if not numbers:
         raise PlateError("no_such_frames", path=name, frames=format_frames(sorted(files)) or "none")
     missing = tuple(number for number in wanted if number not in files)
-    return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
+    return FrameSequence(tuple(files[number] for number in numbers), numbers, missing, pattern=pattern.rule)
 
 
 def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tuple[Path, ...]:

@@ -38,7 +38,14 @@ CORNERS = ("red", "green", "blue", "white")
 
 
 def write_look(
-    folder, photographs=("plate01.jpg",), *, lut=LUT, exposure=0.0, interop_id="lin_rec709_scene", primaries=REC709
+    folder,
+    photographs=("plate01.jpg",),
+    *,
+    lut=LUT,
+    exposure=0.0,
+    interop_id="lin_rec709_scene",
+    primaries=REC709,
+    sequence="",
 ):
     """Write LUT, document, config and linear plates of photographs with these names, and return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,6 +64,7 @@ def write_look(
         "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
         "files": {"spi1d": files.lut.name, "config": files.config.name, "linear": [path.name for path in files.linear]},
     }
+    document |= {"sequence": sequence} if sequence else {}
     files.report.write_text(json.dumps(document), encoding="utf-8")
     return folder
 

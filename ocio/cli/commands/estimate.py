@@ -37,7 +37,8 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
     """Estimate one response of all photographs; return its verdict."""
     options, sources = estimate_options(arguments), pipeline.photograph_sources(arguments.photos, arguments.frames)
     paths = [source.paths[0] for source in sources]
-    plan = pipeline.plan_outputs(arguments.out, paths, plate_options(arguments), outputs)
+    sequence = pipeline.sequence_of(sources)
+    plan = pipeline.plan_outputs(arguments.out, paths, plate_options(arguments), outputs, sequence=sequence)
     with ThreadPoolExecutor(1) as loader, progress_bar("windows") as progress:
         if outputs.has_sheet:
             loader.submit(import_module, "crfnet.report.sheet")  # matplotlib, on another core

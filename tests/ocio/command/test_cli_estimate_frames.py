@@ -3,9 +3,11 @@
 import json
 import shutil
 
+import PyOpenColorIO as OCIO
 import pytest
 
 from tests.helpers.folders import listed
+from tests.helpers.looks import STUDIO, add
 from tests.helpers.movies import write_movie
 
 
@@ -14,8 +16,8 @@ def estimated(crfnet, fixed_model, tmp_path):
     """Estimate from a name with options, and return the names of the photographs in the document."""
 
     def names(name, *more):
-        arguments = ("--out", tmp_path / "look", "--model", fixed_model, "--no-sheet", "--no-linear", "--json", *more)
-        done = crfnet("estimate", name, *arguments)
+        options = ("--out", tmp_path / "look", "--model", fixed_model, "--no-sheet", "--no-linear", "--json")
+        done = crfnet("estimate", *options, name, *more)
         assert (done.code, done.err) == (0, "")
         return [photo["name"] for photo in json.loads(done.out)["estimates"][0]["photographs"]]
 
@@ -44,6 +46,22 @@ def test_a_sequence_gives_some_of_its_frames(estimated, shot, tmp_path):
 @pytest.mark.parametrize("name", ["shot.####.jpg", ""], ids=["pattern", "folder"])
 def test_frames_of_a_sequence_are_chosen(estimated, shot, name):
     assert estimated(shot / name, "--frames", "1002-1010x4") == frames(1002, 1006, 1010)
+
+
+@pytest.mark.parametrize(
+    "names", [["garden_%03d.jpg"], ["garden_001.jpg", "garden_002.jpg"]], ids=["sequence", "two shots"]
+)
+def test_the_config_knows_all_frames_of_a_sequence_but_no_other_shots(estimated, shot, tmp_path, names):
+    for number, path in enumerate(sorted(shot.iterdir()), 1):
+        path.rename(shot / f"garden_{number:03d}.jpg")
+    estimated(*(shot / name for name in names))
+    made, derived = tmp_path / "look" / "config.ocio", tmp_path / "show"
+    configs = [
+        OCIO.Config.CreateFromFile(str(made)),
+        OCIO.Config.CreateFromFile(str(add(STUDIO, derived, made.parent).path)),
+    ]
+    known = [config.getColorSpaceFromFilepath("garden_003.jpg")[0] == "CRF garden_001" for config in configs]
+    assert known == [len(names) == 1] * 2
 
 
 def test_frames_of_a_movie_are_chosen(estimated, tmp_path):

@@ -269,13 +269,14 @@ class TestRules:
     @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
     def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
         look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
-        other = write_look(tmp_path / "other", ["skyline_0001.png", "skyline_0090.png"], interop_id=interop_id)
+        names = ["skyline_001.png", "skyline_090.png"]
+        other = write_look(tmp_path / "other", names, interop_id=interop_id, sequence="skyline_#.png")
         result = loaded(add(STUDIO, tmp_path / "show", look, other).path)
-        assert space_of(result, "skyline_0050.png") == "CRF skyline_0001"
+        assert space_of(result, "skyline_050.png") == "CRF skyline_001"
         assert {space_of(result, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
         assert space_of(result, "sky.v2.png") == "sRGB - Display"
         linear = result.getColorSpace(interop_id).getName()
-        for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_0050.exr"):
+        for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_050.exr"):
             assert space_of(result, path) == linear
 
     def test_a_movie_has_rules_for_its_file_and_its_linear_frames(self, tmp_path):

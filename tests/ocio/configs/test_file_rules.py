@@ -11,7 +11,6 @@ from crfnet.configs.file_rules import (
     plate_pattern,
     plate_rules,
     rule_regex,
-    sequence_pattern,
 )
 from crfnet.configs.portable import portable_config
 
@@ -82,21 +81,6 @@ def test_names_that_somebody_gave_are_his(name):
 )
 def test_a_frame_stands_for_all_frames(name, pattern):
     assert plate_pattern(name) == pattern
-
-
-@pytest.mark.parametrize(
-    ("names", "pattern"),
-    [
-        (("plate_0001.jpg", "plate_0012.jpg"), "plate_#.jpg"),
-        (("run.9.dpx", "run.10.dpx"), "run.#.dpx"),
-        (("v2.take-99999.jpg", "v2.take-100000.jpg"), "v2.take-#.jpg"),
-        (("a#1.0001.jpg", "a#1.0002.jpg"), "a?1.#.jpg"),
-        *(((first, second), "") for first, second in (("sh010.jpg", "sh020.jpg"), ("a_0001.jpg", "b_0001.jpg"))),
-        *(((first, second), "") for first, second in (("a_0001.jpg", "a_0001.jpg"), ("a_0001.jpg", "a_0001.png"))),
-    ],
-)
-def test_frames_that_were_analyzed_stand_for_all_of_their_sequence(names, pattern):
-    assert sequence_pattern(names) == pattern
 
 
 def test_the_linear_files_of_a_plate_are_known_by_name_and_as_frames():
