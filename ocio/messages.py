@@ -28,8 +28,8 @@ SENTENCES: Mapping[str, str] = {
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
-    "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
+    "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
@@ -98,7 +98,7 @@ SENTENCES: Mapping[str, str] = {
     "config_without_rec709": (
         "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one of them"
     ),
-    "exposure_not_finite": "{name}: the exposure must be a number of stops, found {exposure}",
+    "exposure_not_finite": "{name}: the exposure is {exposure}; give at most {most} stops up or down",
     "folder_without_look": "{path}: holds no estimate; give the folder, the JSON or a LUT of one",
     "lut_name_is_variable": "{name}: OpenColorIO takes $ and % in {lut_file!r} for variables; rename it",
     "lut_outside_config_folder": "{name}: {lut_file!r} is not a name within the config's folder; put the LUT there",

@@ -13,7 +13,6 @@ from ..work.writers import Baked, Exported
 from . import stored_estimate
 from .code_values import code_values
 from .nodes import compositor, look_group, plate_group
-from .nodes.building import IS_BLENDER_5
 from .nodes.links import LOOK, PLATE
 from .plates import BAKED_FROM, CODE_VALUES_OF, SHADER, Datablock, alpha_mode, datablock_of_plate, release_pasted
 
@@ -84,8 +83,7 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
     compositor.apply_group(context.scene, tree, wanted)
     if tree.bl_idname == SHADER:
         return "its nodes linearize it in this shader; elsewhere it looks as before"
-    is_off = not IS_BLENDER_5 and not context.scene.use_nodes
-    hint = "; the compositor is switched off: tick Use Nodes" if is_off else ""
+    hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
     if wanted.is_composed:
         return f"its nodes linearize it behind the render, whose film is transparent now{hint}"
     return f"its nodes linearize it in the compositor; elsewhere it looks as before{hint}"

@@ -126,11 +126,12 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
     if has_been and settings.apply not in WITHOUT_FILES:
         button.overwrite = True  # the files are its own
     draw_text(layout, state, letters, icon=state_icon)
-    if has_been and settings.apply == "NODES":
-        draw_text(layout, _place(context, datablock), letters, icon="BLANK1")
+    place = _place(context, datablock) if has_been else ""
+    if settings.apply == "NODES":
+        draw_text(layout, place, letters, icon="BLANK1")
     _draw_settings(layout, context, datablock)
     if has_been and settings.apply != "EXPORT":
-        draw_view(layout, context, is_composited=bool(_place(context, datablock)))
+        draw_view(layout, context, is_composited=bool(place))
 
 
 def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:

@@ -17,7 +17,6 @@ APPLY_MODES = (
     ("EXPORT", "Export", "Write LUTs, and a copy of Blender's OpenColorIO config with a color space for the plate"),
 )
 
-
 #: The properties of a folder that the user chooses.
 FOLDER = {"subtype": "DIR_PATH", "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}}
 

@@ -139,13 +139,14 @@ def _measured(
     """Return the first reading of the labels or a much better other, its measurement, and the other's response."""
     (labels, stops), *others = readings.items()
     measurement = measure(every, stops)
-    for other, stops in others:
-        again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
-        if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
-            again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
-            return other, again, measurement.curve
-        return labels, measurement, again.curve
-    return labels, measurement, None
+    if not others:
+        return labels, measurement, None
+    other, stops = others[0]
+    again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
+    if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
+        again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
+        return other, again, measurement.curve
+    return labels, measurement, again.curve
 
 
 def _frame_reports(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float32Array, Float64Array, IndexArray
 
@@ -99,9 +99,8 @@ class CurveModel:
 
         `log_white` is log2 of the model's irradiance that is white; 0 unless the anchor was corrected afterwards.
         """
-        irradiance = np.linspace(0, 1, SAMPLES)
         table = self.mean + self.basis @ np.asarray(weights, dtype=np.float64)
-        stops = np.log2(np.maximum(irradiance, 1e-9)) + log_white
+        stops = np.log2(np.maximum(UNIFORM, 1e-9)) + log_white
         samples = np.interp(stops, TABLE, table)
         low = stops < LOWEST  # as at the bottom of every sampled response, a straight line leads to black
         samples[low] = table[0] * np.exp2(stops[low] - LOWEST)
@@ -156,5 +155,5 @@ def _tabulated(curve: Float64Array) -> Float64Array:
     """Return a curve of shape (1024,) over uniform irradiance on the table, continued beyond white: (G,)."""
     irradiance = np.exp2(TABLE)
     slope = (curve[-1] - curve[-1 - END_SAMPLES]) * (SAMPLES - 1) / END_SAMPLES
-    inside = np.interp(irradiance, np.linspace(0, 1, SAMPLES), curve)
+    inside = np.interp(irradiance, UNIFORM, curve)
     return np.asarray(inside + slope * np.maximum(irradiance - 1, 0), dtype=np.float64)

@@ -43,6 +43,7 @@ REMEDIES: Mapping[str, str] = {
 SENTENCES: Mapping[str, str] = {
     "each_option_alone": "--{name} is for --each, one response for each photograph; add it, or drop --{name}",
     "frames_of_each": "--frames chooses the frames of one response, --each takes photographs; drop one",
+    "packaged_camera": "{name!r} is a packaged camera, which cannot be removed",
     "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
     " such as shot.%04d.png, or a name without a placeholder",
     "several_plates": "{count} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each",

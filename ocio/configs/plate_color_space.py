@@ -30,7 +30,6 @@ CATEGORIES = ["file-io"]
 #: A file name for which no plate has a rule.
 USUAL_LINEAR_FILE = "crfnet_linear.exr"
 
-
 #: The largest exposure up or down, in stops: powers of two that single precision holds.
 MOST_STOPS = 100
 
@@ -58,7 +57,7 @@ class PlateColorSpace:
         if not self.name.strip():
             raise ConfigError("nameless_color_space")
         if not abs(self.exposure) <= MOST_STOPS:  # also NaN
-            raise ConfigError("exposure_not_finite", name=self.name, exposure=self.exposure)
+            raise ConfigError("exposure_not_finite", name=self.name, exposure=self.exposure, most=MOST_STOPS)
         if not lut_file.name or lut_file.anchor or ".." in lut_file.parts:
             raise ConfigError("lut_outside_config_folder", name=self.name, lut_file=self.lut_file)
         if set(self.lut_file) & set("$%"):

@@ -20,13 +20,7 @@ from ..plates.light import anchored_exposure
 from .calibrations import is_pairs, plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EstimateBatch, LinearBatch
-from .estimates import (
-    FileEstimate,
-    estimate_files,
-    load_camera_response,
-    photograph_sources,
-    response_lut,
-)
+from .estimates import FileEstimate, estimate_files, load_camera_response, photograph_sources, response_lut
 from .photographs import find_photographs
 from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord
@@ -34,6 +28,5 @@ from .run import run_batch
 
 __all__ = ["EstimateBatch", "FileEstimate", "LinearBatch", "OutputPlan", "PhotographRecord", "anchored_exposure"]
 __all__ += ["deliver", "deliver_estimate", "estimate_files", "estimated_light", "find_photographs", "is_pairs"]
-__all__ += ["load_camera_response", "photograph_sources", "plan_calibration"]
-__all__ += ["plan_outputs", "response_lut", "response_to_compare", "run_batch", "sequence_of"]
-__all__ += ["write_calibration"]
+__all__ += ["load_camera_response", "photograph_sources", "plan_calibration", "plan_outputs", "response_lut"]
+__all__ += ["response_to_compare", "run_batch", "sequence_of", "write_calibration"]

@@ -53,9 +53,8 @@ class PhotographRecord:
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
         record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
         paths = [record.folder, record.lut, record.linear]
-        if not all(
-            isinstance(text, str) for text in (*paths, record.photograph, record.place, record.error, record.plate.name)
-        ):
+        texts = [*paths, record.photograph, record.place, record.error, record.plate.name]
+        if not all(isinstance(text, str) for text in texts):
             raise TypeError("a name is not a text")
         if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
             raise ValueError("a path leads elsewhere")  # files there might be replaced

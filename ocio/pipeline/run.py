@@ -123,8 +123,8 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
     record = records.get(task.place)
     if task.is_done(record):
         return record
-    place = (task.folder.as_posix(), task.stem)
-    is_owned = any((other.folder, other.stem) == place for other in records.values() if other is not record)
+    names = (task.folder.as_posix(), task.stem)
+    is_owned = any((other.folder, other.stem) == names for other in records.values() if other is not record)
     if is_owned or (record is None and len(there) < len(task.targets)):
         raise PlateError("file_exists", path=there[0])
     return None

@@ -1,10 +1,12 @@
 """Where many photographs are worked on: processes of this machine, or a Dask cluster."""
 
+import os
 import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from multiprocessing import get_context
+from multiprocessing import connection, get_context, parent_process
 
 from ..errors import PlateError
 
@@ -26,16 +28,25 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
     pool: Executor = ThreadPoolExecutor(1)
     if workers > 1:  # processes that start afresh, because onnxruntime's threads do not survive a fork
         with suppress(OSError, NotImplementedError):  # of a system without shared memory (/dev/shm): one by one
-            pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_leave_signals_to_the_parent)
+            pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_follow_the_parent)
     try:
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_signals_to_the_parent() -> None:
-    """Ignore Control-C, which a terminal sends to every process: the parent decides what ends."""
+def _follow_the_parent() -> None:
+    """Ignore Control-C, which a terminal sends to every process: the parent decides what ends; and end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_parent, daemon=True).start()
+
+
+def _end_with_the_parent() -> None:
+    """Wait for the end of the parent, which may be killed, and end this process."""
+    parent = parent_process()
+    if parent is not None:
+        connection.wait([parent.sentinel])
+        os._exit(1)
 
 
 @contextmanager

@@ -166,8 +166,10 @@ class _Conversion:
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
             block = frame.samples[rows]  # (_ROWS, W, 3)
-            light = _look_up(table, block) if is_coded else lut.apply(np.minimum(block, lut.domain[1]))
-            values = light if is_coded else light * np.float32(self.scale)
+            if is_coded:
+                values = _look_up(table, block)
+            else:
+                values = lut.apply(np.minimum(block, lut.domain[1])) * np.float32(self.scale)
             if matrix is not None:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:

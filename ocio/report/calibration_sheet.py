@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crfnet_core.calibration import PairCalibration
-from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float64Array
 
 from . import sheet
@@ -77,12 +77,12 @@ def _draw_heading(figure: Figure, path: Path, calibration: Measured) -> None:
 
 def _draw_curve(axes: Axes, calibration: Measured) -> None:
     """Draw the response and gamma 2.2; of pairs, codes that were not seen are dotted."""
-    irradiance, brightness = np.linspace(0, 1, SAMPLES), calibration.curve.brightness
+    brightness = calibration.curve.brightness
     low, high = calibration.codes_seen if isinstance(calibration, PairCalibration) else (0, 255)
     seen = np.where((brightness >= low / 255) & (brightness <= high / 255), brightness, np.nan)
-    axes.plot(irradiance, seen, color=sheet.CURVE, linewidth=2.2, label="measured")
+    axes.plot(UNIFORM, seen, color=sheet.CURVE, linewidth=2.2, label="measured")
     if (low, high) != (0, 255):
-        axes.plot(irradiance, brightness, color=sheet.CURVE, linewidth=1.4, linestyle=":", label="not seen")
+        axes.plot(UNIFORM, brightness, color=sheet.CURVE, linewidth=1.4, linestyle=":", label="not seen")
     sheet.complete_curve(axes)
 
 

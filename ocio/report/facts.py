@@ -93,7 +93,7 @@ def _metadata_words(estimate: ResponseEstimate) -> str:
     if not first:
         return "no metadata used"
     differing = sum(words != first for words in others)
-    more = f" (the first of {1 + len(others)} photographs; of {differing} it is another)" if differing else ""
+    more = f" (the first of {1 + len(others)} photographs; in {differing} it differs)" if differing else ""
     if estimate.origins[0].is_told:
         who = "you and the file say" if len(estimate.origins[0].words) > 1 else "you say"
         return f"{who}: {first}{more}"

@@ -20,7 +20,7 @@ from matplotlib.text import Annotation
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
-from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
@@ -107,17 +107,16 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
 
 def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     """Draw the response with its band, and gamma 2.2."""
-    irradiance = np.linspace(0, 1, SAMPLES)
     lower, upper = estimate.band
-    axes.plot(irradiance, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
-    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
+    axes.plot(UNIFORM, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
+    axes.fill_between(UNIFORM, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
     complete_curve(axes)
 
 
 def complete_curve(axes: Axes) -> None:
     """Add gamma 2.2, below the other lines, and the scales and the legend to the drawing of a response."""
-    irradiance, gamma = np.linspace(0, 1, SAMPLES), ResponseCurve.gamma().brightness
-    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), zorder=1.5, label="gamma 2.2")
+    gamma = ResponseCurve.gamma().brightness
+    axes.plot(UNIFORM, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), zorder=1.5, label="gamma 2.2")
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
     axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
     axes.legend(loc="lower right", frameon=False, fontsize=10)

@@ -64,6 +64,5 @@ def test_the_light_of_all_codes_above_7(decoded, curves, largest):
 def test_it_clips_as_a_bake_does(decoded):
     from crfnet_core import ResponseCurve
 
-    assert decoded(ResponseCurve.gamma(), [-0.5, -0.001, 0, 1, 1.001, 1.5]) == pytest.approx(
-        [0, 0, 0, 1, 1, 1], abs=1e-5
-    )
+    light = decoded(ResponseCurve.gamma(), [-0.5, -0.001, 0, 1, 1.001, 1.5])
+    assert light == pytest.approx([0, 0, 0, 1, 1, 1], abs=1e-5)

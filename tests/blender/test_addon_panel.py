@@ -19,9 +19,8 @@ def test_it_draws_every_mode(image, in_editor, mode):
     assert not labels(drawn[curve:apply])
     assert ("compose" in properties) == (mode == "NODES")
     words = " ".join(labels(drawn))
-    assert all(
-        part in words for part in ("analyzed windows agree", "Expected error 0.", "Dashed: gamma 2.2", "Most likely")
-    )
+    parts = ("analyzed windows agree", "Expected error 0.", "Dashed: gamma 2.2", "Most likely")
+    assert all(part in words for part in parts)
     assert "E_est" not in words
     assert "The estimate is" not in words  # the verdict says it
     assert "ignore_metadata" in properties

@@ -32,10 +32,8 @@ def environment(tmp_path, root):
 @pytest.mark.parametrize("call", ["socket()", "getaddrinfo('host.invalid', 80)"])
 def test_a_socket_does_not_go_unnoticed(call, environment):
     """Otherwise the test below could not fail."""
-    assert (
-        run_without_sockets([sys.executable, "-c", f"import socket; socket.{call}"], env=environment).returncode
-        == OPENED_A_SOCKET
-    )
+    command = [sys.executable, "-c", f"import socket; socket.{call}"]
+    assert run_without_sockets(command, env=environment).returncode == OPENED_A_SOCKET
 
 
 def test_an_estimate_opens_no_socket_and_leaves_no_file(plate, environment, tmp_path):

@@ -48,9 +48,8 @@ def test_the_sample_is_what_the_command_writes(root, script, tmp_path):
 def test_the_picture_is_drawn(root, script, tmp_path):
     pytest.importorskip("matplotlib")
     script("make_picture")["draw_picture"](tmp_path / "picture.png")
-    assert all(
-        20_000 < (folder / "picture.png").stat().st_size < LARGEST_PICTURE for folder in (tmp_path, root / "docs")
-    )
+    sizes = [(folder / "picture.png").stat().st_size for folder in (tmp_path, root / "docs")]
+    assert all(20_000 < size < LARGEST_PICTURE for size in sizes)
 
 
 def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(script):

@@ -11,7 +11,7 @@ import bpy
 
 from ..plates import COMPOSITOR, SHADER, SHOWN, Datablock, datablock_of_node
 from .building import GAP, IS_BLENDER_5, WIDTH, activate
-from .links import LOOK, PLATE, groups_of, holds_group_of, key_nodes, nodes_behind, nodes_of, output_of
+from .links import LOOK, PLATE, groups_of, holds_group_of, key_nodes, nodes_behind, nodes_of, output_of, tree_of
 from .ready_comp import is_free, put_render_over_plate
 
 #: Holds the timing of a sequence: the image user of an editor or texture, or a compositor's Image node.
@@ -98,10 +98,8 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
 
 def tree_shown_in(context: bpy.types.Context) -> bpy.types.NodeTree | None:
     """Return the compositor tree that the node editor shows, or else the scene's; None if the scene has none yet."""
-    tree, scene = getattr(context.space_data, "edit_tree", None), context.scene
-    if tree is not None and tree.bl_idname == COMPOSITOR:
-        return tree
-    return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+    tree = getattr(context.space_data, "edit_tree", None)
+    return tree if tree is not None and tree.bl_idname == COMPOSITOR else tree_of(context.scene)
 
 
 def shader_shown_in(context: bpy.types.Context, plate: Datablock) -> bpy.types.NodeTree | None:
@@ -120,7 +118,7 @@ def can_compose(context: bpy.types.Context, plate: Datablock) -> bool:
 
 def is_output(node: bpy.types.Node, scene: bpy.types.Scene) -> bool:
     """Return whether a node is the output of a scene's compositor."""
-    tree = scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+    tree = tree_of(scene)
     return tree is not None and node == output_of(tree)
 
 

@@ -17,7 +17,6 @@ PLATE = "camera_response_of"
 #: The same of the node groups "Camera Look".
 LOOK = "camera_response_look_of"
 
-
 #: The custom property of a shader's node group with the name of the working space that it converts to.
 WORKING_SPACE = "camera_response_working_space"
 
@@ -99,6 +98,11 @@ def node_trees() -> Iterator[bpy.types.NodeTree]:
     yield from (owner.node_tree for owner in owners if owner.node_tree is not None)
 
 
+def tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree | None:
+    """Return the compositor tree of a scene; None if it has none yet."""
+    return scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group
+
+
 def trees_here(scene: bpy.types.Scene) -> list[bpy.types.NodeTree]:
     """Return the node trees of the file, but for those of other scenes only, such as of a full copy of this."""
     of_others = {tree for other in bpy.data.scenes if other != scene for tree in _trees_of(other)}
@@ -108,7 +112,7 @@ def trees_here(scene: bpy.types.Scene) -> list[bpy.types.NodeTree]:
 
 def _trees_of(scene: bpy.types.Scene) -> Iterator[bpy.types.NodeTree]:
     """Yield the trees of a scene's compositor, world and lights, which a full copy has of its own; not of materials."""
-    yield from _trees_in(scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group)
+    yield from _trees_in(tree_of(scene))
     lights = {item.data for item in scene.objects if item.type == "LIGHT"}
     for owner in filter(None, (scene.world, *lights)):
         yield from _trees_in(owner.node_tree)

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 #: Half the side of the square of pixels whose mean is picked.
 REACH = 2
 
-
 #: The entry of the key in Blender's keymaps, with its keymap, while it is there.
 _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 

@@ -10,6 +10,7 @@ from ... import pipeline
 from ...luts.files import write_lut
 from ...report import words
 from ...report.documents import camera_summary
+from ..remedies import CommandError
 from .printing import print_result
 
 
@@ -49,6 +50,8 @@ def _show(arguments: argparse.Namespace) -> None:
 def _remove(arguments: argparse.Namespace) -> None:
     """Remove a camera of the user's."""
     library = CameraLibrary.of_user()
+    if not library.file_of(arguments.name) and CameraLibrary.shipped().file_of(arguments.name):
+        raise CommandError("packaged_camera", name=arguments.name)
     library.remove(arguments.name)
     document = {"folder": str(library.folder), "removed": arguments.name}
     print_result(document, [f"Removed: {arguments.name}."], as_json=arguments.json)

@@ -40,8 +40,8 @@ def test_a_photograph_keeps_its_windows_and_gets_the_camera_s_response(estimate)
     assert ResponseEstimate.from_dict(answer.to_dict()) == answer
 
 
-def test_a_photograph_of_another_camera_is_warned_of(estimate):
-    answer = with_camera(estimate, camera("a", make="NIKON", model="NIKON D90"))
+def test_photographs_of_another_camera_are_warned_of_once(estimate):
+    answer = with_camera(replace(estimate, origins=2 * estimate.origins), camera("a", make="NIKON", model="NIKON D90"))
     (warning,) = answer.warnings
     assert (warning.code, warning.facts["other"]) == ("other_camera", "SONY ILCE-7M3")
 

@@ -120,7 +120,7 @@ BAD = [
     ("bad_camera_name", "camera add --from-calibration IMG_0.jpg --name a/b"),
     ("no_camera", "camera show nobody"),
     ("no_camera", "camera remove nobody"),
-    ("no_camera", "camera remove 'Canon EOS 20D'"),
+    ("packaged_camera", "camera remove 'Canon EOS 20D'"),
     ("lut_suffix", "camera export measured a.xyz"),
     ("no_camera", "estimate IMG_0.jpg --out look --camera nobody"),
     ("no_camera", "estimate IMG_0.jpg --each --out look --camera nobody"),

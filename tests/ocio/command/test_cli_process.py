@@ -144,23 +144,8 @@ def test_works_without_shared_memory(photographs, look, fixed_model, tmp_path, c
         pytest.skip("namespaces are not allowed here")
     model = ("--model", fixed_model, "--no-sheet", "--no-linear")
     options = model if command == "estimate" else ("--lut", look / "plate.spi1d")
-    done = subprocess.run(
-        [
-            *WITHOUT_DEVICES,
-            CRFNET,
-            command,
-            photographs,
-            "--each",
-            "--workers",
-            "2",
-            "--out",
-            tmp_path / "out",
-            *options,
-        ],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    arguments = [command, photographs, "--each", "--workers", "2", "--out", tmp_path / "out", *options]
+    done = subprocess.run([*WITHOUT_DEVICES, CRFNET, *arguments], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert len(list((tmp_path / "out").rglob("*.exr" if command == "linearize" else "*.spi1d"))) == 3
 

@@ -69,9 +69,8 @@ def test_a_cube_leaves_the_usual_domain_out():
 
 def test_the_identity_depends_on_the_table_and_the_domain_alone():
     assert lut_identity(LUT) == lut_identity(Lut1D(LUT.values, LUT.domain))
-    assert (
-        len({lut_identity(LUT), lut_identity(Lut1D(LUT.values)), lut_identity(Lut1D(LUT.values * 2, LUT.domain))}) == 3
-    )
+    different = (LUT, Lut1D(LUT.values), Lut1D(LUT.values * 2, LUT.domain))
+    assert len(set(map(lut_identity, different))) == 3
 
 
 def test_opencolorio_sees_the_id_and_the_descriptions_of_a_clf(tmp_path):

@@ -118,3 +118,16 @@ def test_a_full_disk_is_named(tmp_path):
     spec = oiio.ImageSpec(90, 70, 4, "half")
     with refused(PlateError, "exr_not_written"):
         exr.write_exr(tmp_path / "full.exr", spec, SMALL.astype(np.float16), name=Path("a.exr"))
+
+
+def test_a_file_whose_end_is_lost_while_it_is_written_is_refused(tmp_path, monkeypatch):
+    """As on a full disk: OpenEXR reports no error of its last writes."""
+    is_whole = exr.is_whole
+
+    def lose(path, header):
+        os.truncate(path, path.stat().st_size - 1)
+        return is_whole(path, header)
+
+    monkeypatch.setattr(exr, "is_whole", lose)
+    plate = write_image(tmp_path / "a.png", SMALL)
+    assert refusal(plate, tmp_path / "a.exr", LUT) == "exr_not_written"

@@ -16,6 +16,7 @@ from tests.helpers.folders import listed
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
+from tests.helpers.refusals import refused
 
 ROOT = Path(__file__).parents[3]
 
@@ -59,22 +60,27 @@ def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
     assert listed(out) == ["a.1.exr", "a.5.exr", "a.9.exr"]
     assert calls[-1] == (5, 5)
     write_sequence(tmp_path, (2, 3))
-    assert len(linearize(pattern, out / "a.%d.exr", LUT).written) == 2
+    report = linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
+    assert (len(report.written), calls[-3:]) == (2, [(3, 5), (4, 5), (5, 5)])
 
 
-def test_frames_that_another_process_finishes_meanwhile_are_left_alone(tmp_path, out):
+def test_frames_that_another_process_finishes_meanwhile_are_left_alone_or_refused_if_they_differ(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 3))
     linearize(pattern, tmp_path / "other_####.exr", LUT)
-    finished = tmp_path / "other_0002.exr"
+    finished, target = tmp_path / "other_0002.exr", out / "a_0002.exr"
 
-    def appear(done, total):
-        if done == 0:
-            shutil.copy(finished, out / "a_0002.exr")
+    def appear(*_):
+        if not target.exists():
+            shutil.copy(finished, target)
 
     report = linearize(pattern, out / "a_####.exr", LUT, progress=appear)
     assert [path.name for path in report.written] == ["a_0001.exr", "a_0003.exr"]
     assert [path.name for path in report.skipped] == ["a_0002.exr"]
-    assert (out / "a_0002.exr").read_bytes() == finished.read_bytes()
+    assert target.read_bytes() == finished.read_bytes()
+    target.unlink()
+    finished = tmp_path / "other_0003.exr"
+    with refused(PlateError, "finished_differs", path=target):
+        linearize(pattern, out / "a_####.exr", LUT, progress=appear)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
