@@ -45,9 +45,9 @@ class Session:
             self._session = onnxruntime.InferenceSession(
                 graph, _options(config), providers=["CPUExecutionProvider"], enable_fallback=0
             )
-        except _PROBLEMS as problem:
+            sizes = [size for node in self._session.get_inputs() for size in node.shape[1:2]]
+        except _PROBLEMS as problem:  # also UnicodeDecodeError: sizes may have names
             raise ModelError("unloadable_graph", folder=folder, reason=problem) from None
-        sizes = [size for node in self._session.get_inputs() for size in node.shape[1:2]]
         #: Columns of the input that the graph reads; None, in place of which it has a name, for all.
         self._columns = sizes[0] if sizes and isinstance(sizes[0], int) else None
 

@@ -17,7 +17,7 @@ from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
 from .file_rules import MOST_PATTERNS, plate_pattern
 from .files import load_config, plate_exposure
-from .plate_color_space import PlateColorSpace
+from .plate_color_space import MOST_STOPS, PlateColorSpace
 from .reference_space import LINEAR_NAMES
 
 #: Ends the name of a movie as a photograph: clip.mp4 frame 1.
@@ -91,13 +91,13 @@ def _document(path: Path) -> dict[str, Any] | None:
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         names += [document["sequence"]] if "sequence" in document else []
-        float(document["exposure"]["stops"])
+        is_bounded = abs(float(document["exposure"]["stops"])) <= MOST_STOPS
         str(document["output_space"]["interop_id"])
         _primaries(document).to_xyz()
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
-    return document if is_named and document["photographs"] else None
+    return document if is_named and is_bounded and document["photographs"] else None
 
 
 def _is_file_name(name: str) -> bool:

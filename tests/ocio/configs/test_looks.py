@@ -100,7 +100,7 @@ def test_primaries_that_make_no_matrix_are_refused(tmp_path, root, point):
 @pytest.mark.parametrize("stops", [2000, 1e308])
 def test_an_exposure_beyond_single_precision_is_refused(tmp_path, root, stops):
     (tmp_path / "plate.spi1d").write_bytes((root / "docs" / "sample" / "plate.spi1d").read_bytes())
-    assert refusal(tmp_path, root, "exposure", "stops", stops) == "exposure_not_finite"
+    assert refusal(tmp_path, root, "exposure", "stops", stops) == "not_a_look"
 
 
 def test_a_missing_lut_is_named(tmp_path):
