@@ -81,16 +81,17 @@ def end(space: bpy.types.SpaceImageEditor) -> None:
 def same_view(context: bpy.types.Context) -> Iterator[None]:
     """Keep zoom and position of an Image Editor while it changes to another image: Blender has them for each image."""
     space = context.space_data
-    if space is None or space.type != "IMAGE_EDITOR":
+    if space is None or space.type != "IMAGE_EDITOR" or space.image is None:
         yield
         return
     region = next(each for each in context.area.regions if each.type == "WINDOW")
-    zoom, center = space.zoom_percentage, region.view2d.region_to_view(region.width / 2, region.height / 2)
+    zoom, size = space.zoom_percentage, tuple(space.image.size)  # which Blender does not know yet of a new sequence
+    center = region.view2d.region_to_view(region.width / 2, region.height / 2)
     yield
-    if space.image is None or not all(map(math.isfinite, center)):  # it was never drawn
+    if not all(map(math.isfinite, center)):  # it was never drawn
         return
-    scale = zoom / 100  # pixels of the screen, to which the position is rounded: so it does not drift
-    offset = [round((at - 0.5) * side * scale) / scale for at, side in zip(center, space.image.size, strict=True)]
+    # in whole pixels of the image, so that the half one by which Blender misses the center does not add up
+    offset = [math.floor((at - 0.5) * side + 0.25) for at, side in zip(center, size, strict=True)]
     with context.temp_override(region=region):
         bpy.ops.image.view_all()
         space.zoom_percentage = zoom

@@ -51,13 +51,13 @@ class CRF_OT_compare(bpy.types.Operator):
         space = context.space_data
         is_switch = not self.properties.is_property_set("is_after")
         is_after = plates.compared_plate(space.image) is None if is_switch else self.is_after
-        try:
-            with comparison.same_view(context):
-                comparison.end(space)
+        with comparison.same_view(context):
+            comparison.end(space)
+            try:
                 if is_after:
                     _show_linear(space)
-        except expected_errors() as problem:
-            return failed(self, problem)
+            except expected_errors() as problem:
+                return failed(self, problem)
         return {"FINISHED"}
 
 

@@ -81,8 +81,9 @@ def show_nodes() -> None:
 
 
 def pan(x: float, y: float) -> None:
-    """Move the picture in the Image Editor by pixels of the image."""
+    """Enlarge the picture in the Image Editor three times, and move it by pixels of the image."""
     with context("IMAGE_EDITOR"):
+        bpy.ops.image.view_zoom_ratio(ratio=3)
         bpy.ops.image.view_pan(offset=(x, y))
 
 

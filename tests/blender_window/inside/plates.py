@@ -61,8 +61,7 @@ def comp() -> list[str]:
 
 def render(name: str, path: str) -> str:
     """Render the scene, with all that its compositor does, to a float EXR file of the size of an image."""
-    scene, image = bpy.context.scene, bpy.data.images[name]
-    settings = scene.render
+    settings, image = bpy.context.scene.render, bpy.data.images[name]
     settings.resolution_x, settings.resolution_y = image.size
     settings.resolution_percentage, settings.dither_intensity, settings.use_sequencer = 100, 0, False
     settings.compositor_device, settings.compositor_precision = "CPU", "FULL"
