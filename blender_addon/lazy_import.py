@@ -27,7 +27,9 @@ def load(module: str) -> ModuleType:
     _expose_blenders_own()
     try:
         imported = importlib.import_module(module, __package__)
-        vars(importlib.import_module("crfnet")).setdefault(_IMPORTED, importlib.metadata.version("crfnet"))
+        names = vars(importlib.import_module("crfnet"))
+        if _IMPORTED not in names:  # to look it up takes longer than to find a module again
+            names[_IMPORTED] = importlib.metadata.version("crfnet")
         return imported
     except ImportError as problem:
         name = (problem.name or str(problem)).partition(".")[0]

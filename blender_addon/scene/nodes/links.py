@@ -103,6 +103,7 @@ def tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree | None:
     return scene.node_tree if bpy.app.version < (5, 0, 0) else scene.compositing_node_group
 
 
+@_asked_once
 def trees_here(scene: bpy.types.Scene) -> list[bpy.types.NodeTree]:
     """Return the node trees of the file, but for those of other scenes only, such as of a full copy of this."""
     of_others = {tree for other in bpy.data.scenes if other != scene for tree in _trees_of(other)}
