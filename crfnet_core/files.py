@@ -116,9 +116,9 @@ def cut_to_bytes(name: str, most: int) -> str:
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")
 
 
-def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
-    text = json.dumps(document, indent=1, ensure_ascii=False)
+def json_text(document: Mapping[str, Any], *, ensure_ascii: bool = False) -> str:
+    """Return a document as JSON text, each row of numbers on one line; `ensure_ascii` escapes other characters."""
+    text = json.dumps(document, indent=1, ensure_ascii=ensure_ascii)
     return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
 
 

@@ -128,21 +128,44 @@ def _publish(temporary: Path, folder: Path, *, overwrite: bool, error: type[CRFN
             target = folder / path.name
             if files[1:] and path.name in there:  # a single file is replaced in one step
                 target.replace(earlier / path.name)
-            path.replace(target)
+            _move(path, target, overwrite=overwrite)
         _flush(folder)
     except BaseException as problem:
         for path in files:  # the new ones go; `_remove` puts the earlier ones back
-            if not os.path.lexists(path) and (path.name not in there or os.path.lexists(earlier / path.name)):
+            if _has_name(path, folder) and (path.name not in there or os.path.lexists(earlier / path.name)):
                 with suppress(OSError):
                     (folder / path.name).unlink()
         if not isinstance(problem, OSError):
             raise
+        if isinstance(problem, FileExistsError) and not overwrite:
+            raise error("written_meanwhile", path=target) from problem
         raise error("not_written", path=target, reason=problem.strerror or problem) from problem
+
+
+def _move(path: Path, target: Path, *, overwrite: bool) -> None:
+    """Give a file its name; without `overwrite` raise FileExistsError if another process has the name by now."""
+    if not overwrite:
+        try:
+            os.link(path, target)  # unlike a rename, it never replaces a file
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without hard links
+            pass
+        else:
+            path.unlink()
+            return
+    path.replace(target)
+
+
+def _has_name(path: Path, folder: Path) -> bool:
+    """Return whether a file of the set has its name in `folder`."""
+    target = folder / path.name
+    return not os.path.lexists(path) or (os.path.lexists(target) and path.samefile(target))
 
 
 def _name_the_rest(temporary: Path, folder: Path) -> None:
     """Give the files of a set of which some have their names the others, where they are free."""
-    files = _staged(temporary)
+    files = [path for path in _staged(temporary) if not _has_name(path, folder)]
     if any(len(files) < int(earlier.name.removeprefix(_EARLIER)) for earlier in temporary.glob(f"{_EARLIER}*")):
         for path in files:
             if not os.path.lexists(folder / path.name):

@@ -28,6 +28,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     with own_stderr(), interruptible() as interruption:
         try:
             return _run(build_parser().parse_args(argv), sys.argv if argv is None else argv)
+        except OSError as problem:  # of --help
+            return _fail(problem)
         except BaseException as problem:  # an interrupted import raises all sorts of errors
             if interruption.signal is None and not isinstance(problem, KeyboardInterrupt):
                 raise

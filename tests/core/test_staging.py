@@ -191,13 +191,18 @@ def test_a_folder_that_is_just_made_is_not_taken_for_abandoned(tmp_path):
     assert len(content(tmp_path)) == 400
 
 
-def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path):
+@pytest.mark.parametrize("moment", ["while they are written", "at the last moment"])
+def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path, monkeypatch, moment):
     def write_beside():
         with staged_files(tmp_path, overwrite=False) as staged:
             (staged / "a.txt").write_text("new")
             (staged / "b.txt").write_text("new")
-            (tmp_path / "b.txt").write_text("theirs")
+            if moment == "while they are written":
+                (tmp_path / "b.txt").write_text("theirs")
 
+    fsync = os.fsync
+    if moment == "at the last moment":  # the flushed temporary folder is the last before the names
+        monkeypatch.setattr(os, "fsync", lambda number: (fsync(number), (tmp_path / "b.txt").write_text("theirs")))
     with refused(CRFNetError, "written_meanwhile", path=tmp_path / "b.txt"):
         write_beside()
     assert content(tmp_path) == {"b.txt": "theirs"}

@@ -1,4 +1,4 @@
-"""Let one call fail: a write, fsync, close or rename of Python below a folder, or the last page that an EXR flushes."""
+"""Let one call of Python fail: write, fsync, close, link or rename below a folder, or the last page of an EXR."""
 
 import builtins
 import io
@@ -33,7 +33,7 @@ class Injector:
 
     def install(self):
         """Replace the calls in this process, for good."""
-        for name in ("fsync", "close", "rename", "replace"):
+        for name in ("fsync", "close", "link", "rename", "replace"):
             setattr(os, name, self._counted(name, getattr(os, name)))
         opened, create = io.open, oiio.ImageOutput.create
 

@@ -1,7 +1,6 @@
 """The whole command line of `crfnet`; `parts` has the options that subcommands share."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from . import parts
@@ -80,7 +79,7 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from importlib.metadata import version
 
-        sys.stdout.write(f"{parser.prog} {version('crfnet')}\n")
+        print(parser.prog, version("crfnet"), flush=True)  # noqa: T201
         parser.exit()
 
 

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple, NoReturn, TypeAlias
+from typing import Any, NamedTuple, NoReturn, TypeAlias
 
 from ...defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
 from ..streams import shown
@@ -26,7 +26,11 @@ class Exposure(NamedTuple):
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose error messages are one line."""
+    """An argument parser whose error messages are one line, and whose help raises OSError if nothing takes it."""
+
+    def print_help(self, file: Any = None) -> None:
+        """Print the help; argparse ignores errors of the output."""
+        print(self.format_help(), end="", file=file, flush=True)
 
     def error(self, message: str) -> NoReturn:
         """Print `message` on one line and exit with `BAD_INPUT`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import os
 import shlex
 import shutil
@@ -61,9 +62,11 @@ def _font_folder() -> str:
 
 
 def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:
-    """Print a JSON document, or the same in lines."""
+    """Print a JSON document, or the same in lines; raise OSError for a document where the output is closed."""
     if as_json:
-        sys.stdout.write(json_text(document))
+        if sys.__stdout__ is None:
+            raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+        sys.stdout.write(json_text(document, ensure_ascii=True))  # whatever encoding the output has
     else:
         sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 

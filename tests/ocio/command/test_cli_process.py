@@ -100,6 +100,22 @@ def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
     assert absent.returncode == BAD_INPUT
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+@pytest.mark.parametrize("command", ["--version >/dev/full", "--help >/dev/full", "info LUT --json >&-"])
+def test_a_document_that_nothing_takes_is_an_error(look, command):
+    command = command.replace("LUT", f"'{look / 'plate.spi1d'}'")
+    done = subprocess.run(f"'{CRFNET}' {command}", shell=True, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (BAD_INPUT, 1)
+
+
+def test_a_json_document_is_ascii_whatever_the_encoding_of_the_output(look, tmp_path):
+    shutil.copy(look / "plate.spi1d", tmp_path / "\N{LATIN SMALL LETTER U WITH DIAERESIS}.spi1d")
+    environment = os.environ | {"PYTHONIOENCODING": "cp437" if os.name == "nt" else "ascii"}
+    command = [CRFNET, "info", *tmp_path.iterdir(), "--json"]
+    done = subprocess.run(command, capture_output=True, check=True, env=environment)
+    assert json.loads(done.stdout.decode("ascii"))["file"].endswith("\N{LATIN SMALL LETTER U WITH DIAERESIS}.spi1d")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, arguments, tmp_path):
     with start_interruptible([sys.executable, "-c", WAITING, *arguments], stdout=subprocess.PIPE, text=True) as process:
