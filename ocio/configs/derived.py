@@ -7,7 +7,7 @@ next to the new config. Nothing of the base is changed, nothing is deleted.
 
 import copy
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +19,7 @@ from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
 from ..output_files import all_or_none, check_targets, distinct_names
-from .file_rules import is_counter_name
+from .file_rules import LINEAR_SUFFIX, is_counter_name
 from .files import write_config
 from .looks import Look
 from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, plates_in_config
@@ -92,14 +92,22 @@ def _new_spaces(
 def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
     """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
     file, config = Path(look.space.lut_file), base.config
-    hidden = map(str.strip, config.getInactiveColorSpaces().split(","))
-    taken = {name.casefold() for name in (*names, *hidden, *config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL))}
+    taken = {name.casefold() for name in (*names, *_other_names(config))}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     used = {name.casefold() for name in lut_files} | _names_on_path(base)  # as macOS and Windows compare them
     lut_file = next(name for name in stems if name.casefold() not in used)
     free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
     name = next(name for name in free if config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file)
+
+
+def _other_names(config: OCIO.Config) -> Iterator[str]:
+    """Yield the names that a color space may not have besides those of color spaces, roles, looks and views."""
+    yield from map(str.strip, config.getInactiveColorSpaces().split(","))
+    for name in config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL):
+        yield from (name, *config.getNamedTransform(name).getAliases())
+    rules = config.getFileRules()
+    yield from (rules.getName(index).removesuffix(LINEAR_SUFFIX) for index in range(rules.getNumEntries()))
 
 
 def _relocated(base: ConfigSource) -> OCIO.Config:

@@ -56,6 +56,8 @@ def linear_header(
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
             value = attribute_value(source, attribute)
             value = one_line(value) if isinstance(value, str) else value
+            if attribute.name == "PixelAspectRatio" and not 1e-6 < float(value) < 1e6:  # OpenEXR's; 0 in FFmpeg's DPX
+                continue
             header.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
     header.attribute("compression", "zips")
     standard: dict[str, str | float] = {}

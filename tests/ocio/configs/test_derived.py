@@ -150,13 +150,17 @@ class TestBase:
         assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, ())
         assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
 
-    @pytest.mark.parametrize("is_hidden", [True, False])
-    def test_a_name_that_is_hidden_or_a_named_transform_is_not_taken(self, studio, small_look, tmp_path, is_hidden):
+    @pytest.mark.parametrize("owner", ["hidden", "named transform", "alias of a named transform", "file rule"])
+    def test_a_name_that_something_else_has_is_not_taken(self, studio, small_look, tmp_path, owner):
         config = loaded(studio)
-        if is_hidden:
+        names = {"name": "curve", "aliases": [NAME.upper()]} if "alias" in owner else {"name": NAME}
+        if owner == "hidden":
             config.setInactiveColorSpaces(f"film, {NAME}")
+        elif owner == "file rule":
+            (rules := config.getFileRules()).insertRule(0, NAME, "film", "other")
+            config.setFileRules(rules)
         else:
-            config.addNamedTransform(OCIO.NamedTransform(name=NAME, forwardTransform=OCIO.MatrixTransform()))
+            config.addNamedTransform(OCIO.NamedTransform(**names, forwardTransform=OCIO.MatrixTransform()))
         studio.write_text(config.serialize())
         done = add(studio, tmp_path / "new", small_look)
         assert [plate.name for plate in done.plates] == [f"{NAME} (look)"]

@@ -137,6 +137,11 @@ def test_time_code_and_rate_are_kept(tmp_path, out):
     assert result["PixelAspectRatio"] == 2
 
 
+def test_a_pixel_aspect_of_0_as_ffmpeg_writes_it_is_left_out(tmp_path, out):
+    linearize(write_image(tmp_path / "a.dpx", SMALL[..., :3], PixelAspectRatio=0.0), out / "a.exr", LUT)
+    assert read_exr(out / "a.exr")[1].getattribute("PixelAspectRatio") in (None, 1)
+
+
 def test_output_is_reproducible_and_undated(tmp_path, out):
     plate = write_image(tmp_path / "a.png", SMALL)
     linearize(plate, out / "a.exr", LUT)
