@@ -93,6 +93,15 @@ def test_an_exr_of_code_values_is_refused(tmp_path, depth, code):
         read_frame(path, is_encoded=True)
 
 
+@pytest.mark.parametrize("channel", range(4))
+def test_an_exr_with_values_that_are_not_finite_is_refused(tmp_path, channel):
+    values = np.full((4, 4, 4), 0.5, np.float32)
+    values[0, :2, channel], values[1, 1], values[2, 2, 3] = (np.nan, np.inf), -np.inf, 0
+    path = write_image(tmp_path / "a.exr", values)
+    with refused(PlateError, "exr_not_finite", path=path, count=3):
+        read_frame(path, is_encoded=True)
+
+
 def test_a_file_tagged_linear_is_refused(tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(png(1, 1, bytes(4), chunks=png_chunk(b"gAMA", struct.pack(">I", 100_000))))
