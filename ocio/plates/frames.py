@@ -1,6 +1,7 @@
 """The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -70,11 +71,14 @@ def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tupl
 
 
 def identities(sequence: FrameSource) -> Callable[[int], str]:
-    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number."""
+    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number.
+
+    A movie, which may have many gigabytes, is read meanwhile; its first name waits for the end.
+    """
     if isinstance(sequence, FrameSequence):
         return lambda position: file_sha256(sequence.paths[position])
-    movie = file_sha256(sequence.paths[0])
-    return lambda position: f"{movie} {sequence.numbers[position]}"
+    movie = ThreadPoolExecutor(1).submit(file_sha256, sequence.paths[0])
+    return lambda position: f"{movie.result()} {sequence.numbers[position]}"
 
 
 def _only_sequence(folder: Path) -> FramePattern:
