@@ -16,7 +16,7 @@ from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from .frame_pattern import FramePattern, listed
 
 #: Kind of a name that is not a pattern -> the code of the error that it stands for no frames; see `_kind`.
-_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "": "no_such_plate"}
+_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "pipe": "not_a_file", "": "no_such_plate"}
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,9 @@ def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> 
 
 
 def _kind(path: Path) -> str:
-    """Return "file", "folder", or "" for a name that does not exist or that the system refuses."""
+    """Return "file", "folder", "pipe", also of a device, or "": absent, or refused by the system."""
     try:
-        return "file" if path.is_file() else "folder" if path.is_dir() else ""
+        return "file" if path.is_file() else "folder" if path.is_dir() else "pipe" if path.exists() else ""
     except OSError:
         return ""
 
