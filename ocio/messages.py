@@ -24,6 +24,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_codes": "{path}: most values lie above {most}, but encoded brightness lies in [0, 1]: divide code values by"
     " the largest, such as 255",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
+    "exr_not_finite": "{path}: {count} of its pixels hold NaN or infinity, for which no LUT has an entry; replace them",
     "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"

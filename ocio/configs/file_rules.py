@@ -25,8 +25,8 @@ COUNTER_NAMES = (
 #: The most patterns of one rule: OpenColorIO's regular expressions fail with 4000.
 MOST_PATTERNS = 100
 
-#: Frame numbers at the end of a name: shot.0001.
-FRAME_NUMBER = re.compile(r"\.\d{2,}$")
+#: Frame numbers at the end of a name: shot.0001, shot.-0001.
+FRAME_NUMBER = re.compile(r"\.-?\d{2,}$")
 
 
 def plate_pattern(name: str) -> str:
@@ -57,8 +57,9 @@ def is_counter_name(name: str) -> bool:
 def rule_regex(patterns: Iterable[str]) -> str:
     """Return the regular expression of file names, in a syntax that every host shares.
 
-    In the patterns, `*` stands for any characters, `?` for any character and `#` for a number of any length; none of
-    them matches a separator of folders. A pattern holds for full names, in any folder, in upper and lower case (ASCII).
+    In the patterns, `*` stands for any characters, `?` for any character and `#` for a number of any length, also below
+    0 behind a dot; none of them matches a separator of folders. A pattern holds for full names, in any folder, in upper
+    and lower case (ASCII).
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
@@ -121,13 +122,14 @@ def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
 
 def _linear_pattern(name: str) -> str:
     """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
-    return re.sub(r"\.\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
+    return re.sub(r"\.-?\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
 
 
 def _pattern_regex(pattern: str) -> str:
     """Return the regular expression of one pattern."""
     wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", "\\": r"[/\\]"}
-    return "".join(wildcards.get(letter) or _letter_regex(letter) for letter in pattern)
+    regex = "".join(wildcards.get(letter) or _letter_regex(letter) for letter in pattern)
+    return regex.replace(r"\.[0-9]+", r"\.-?[0-9]+")
 
 
 def _letter_regex(letter: str) -> str:

@@ -85,7 +85,7 @@ def _inverse_response(path: Path) -> Lut1D:
 
 
 def _document(path: Path) -> dict[str, Any] | None:
-    """Return the document of an estimate, or None if the file is absent or something else."""
+    """Return the document of an estimate, or None if the file is absent or something else; refuse one kept secret."""
     try:
         document = read_json(path)
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
@@ -95,6 +95,8 @@ def _document(path: Path) -> dict[str, Any] | None:
         str(document["output_space"]["interop_id"])
         _primaries(document).to_xyz()
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
+    except PermissionError as problem:
+        raise ConfigError("not_opened", path=path, reason=problem.strerror) from problem
     except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
     return document if is_named and is_bounded and document["photographs"] else None

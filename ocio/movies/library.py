@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import logging
 import shlex
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,8 +40,8 @@ _TRANSPORT = ((188, 0), (192, 4))
 #: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 IPT_PROFILE, OPENING = 5, 60
 
-#: Codecs of pictures by themselves: they hold a thumbnail where a stream of another codec is there, too.
-STILL_CODECS = ("mjpeg", "png", "bmp", "gif", "webp", "tiff")
+#: Packets of video by which a film is told from a thumbnail, or the pictures of chapters, in a stream of its own.
+FIRST_PACKETS = 24
 
 #: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.
 MOST_PIXELS, _TOO_LARGE = 150_000_000, "exceeds specified max pixel count"
@@ -81,7 +83,7 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
         with av.logging.Capture() as messages:
             opening = av.open(f"file:{path}", options=bounds, metadata_errors="replace", timeout=(OPENING, None))
         with opening as container:
-            stream = _film(container)
+            stream = _film(path, container)
             if not isinstance(stream, av.VideoStream) or (context := stream.codec_context) is None:
                 raise PlateError("no_video", path=path)
             is_refused = any(_TOO_LARGE in message for _, _, message in messages)
@@ -96,12 +98,23 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
         raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
 
 
-def _film(container: InputContainer) -> Any:
-    """Return FFmpeg's best video stream, but not a thumbnail: a still picture next to a stream of another codec."""
-    decoded = [stream for stream in container.streams.video if stream.codec_context]
-    films = [stream for stream in decoded if stream.codec_context.codec.canonical_name not in STILL_CODECS]
+def _film(path: Path, container: InputContainer) -> Any:
+    """Return FFmpeg's best video stream, unless it is a cover, or another one has twice as many frames; None without.
+
+    FFmpeg prefers the stream that is marked as the default one, which a thumbnail may be.
+    """
+    import av
+
+    cover = av.stream.Disposition.attached_pic
+    films = [each for each in container.streams.video if each.codec_context and not each.disposition & cover]
+    if len(films) < 2:
+        return films[0] if films else None
+    with av.open(f"file:{path}", metadata_errors="replace") as again:  # not every container can be wound back
+        packets = islice(again.demux([again.streams[each.index] for each in films]), FIRST_PACKETS)
+        counts = Counter(packet.stream.index for packet in packets if packet.size)
     best = container.streams.best("video")
-    return best if best in films or not films else films[0]
+    most = max(films, key=lambda each: counts[each.index])
+    return best if best in films and 2 * counts[best.index] > counts[most.index] else most
 
 
 @cache

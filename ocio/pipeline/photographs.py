@@ -45,6 +45,8 @@ def unreadable_reason(photo: Path) -> str:
         str(photo).encode()
         if photo.is_dir():
             os.scandir(photo).close()
+        elif photo.exists() and not photo.is_file():
+            return "is a pipe or a device; give a file"
     except UnicodeEncodeError:
         return "the name is not valid Unicode; rename it"
     except OSError as problem:

@@ -110,6 +110,8 @@ def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
 @contextmanager
 def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     """Yield an OpenEXR file as an OpenImageIO.ImageInput, or refuse it."""
+    if path.exists() and not path.is_file():  # a pipe would block
+        raise PlateError("not_a_file", path=path)
     source, problem = oiio.ImageInput.open(str(path)), oiio_message()
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
@@ -143,6 +145,8 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
         problem = oiio_message(source)
     if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
+    if faulty := np.count_nonzero(np.any([~np.isfinite(plane) for plane in planes.values()], axis=0)):
+        raise PlateError("exr_not_finite", path=path, count=faulty)
     samples = np.concatenate([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
     if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
         raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)

@@ -1,6 +1,7 @@
 """The frames that a name stands for: find their files (a folder's by Fileseq), choose some of them."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,7 +16,7 @@ from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from .frame_pattern import FramePattern, listed
 
 #: Kind of a name that is not a pattern -> the code of the error that it stands for no frames; see `_kind`.
-_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "": "no_such_plate"}
+_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "pipe": "not_a_file", "": "no_such_plate"}
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,14 @@ def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tupl
 
 
 def identities(sequence: FrameSource) -> Callable[[int], str]:
-    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number."""
+    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number.
+
+    A movie, which may have many gigabytes, is read meanwhile; its first name waits for the end.
+    """
     if isinstance(sequence, FrameSequence):
         return lambda position: file_sha256(sequence.paths[position])
-    movie = file_sha256(sequence.paths[0])
-    return lambda position: f"{movie} {sequence.numbers[position]}"
+    movie = ThreadPoolExecutor(1).submit(file_sha256, sequence.paths[0])
+    return lambda position: f"{movie.result()} {sequence.numbers[position]}"
 
 
 def _only_sequence(folder: Path) -> FramePattern:
@@ -101,9 +105,9 @@ def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> 
 
 
 def _kind(path: Path) -> str:
-    """Return "file", "folder", or "" for a name that does not exist or that the system refuses."""
+    """Return "file", "folder", "pipe", also of a device, or "": absent, or refused by the system."""
     try:
-        return "file" if path.is_file() else "folder" if path.is_dir() else ""
+        return "file" if path.is_file() else "folder" if path.is_dir() else "pipe" if path.exists() else ""
     except OSError:
         return ""
 

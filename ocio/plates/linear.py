@@ -89,12 +89,12 @@ def linearize_plates(
         raise PlateError("bad_workers", workers=workers)
     if options.is_encoded and isinstance(sequence, FrameSequence):
         sequence = replace(sequence, is_encoded=True)
-    first = first_frame(sequence)
+    plate_of, first = identities(sequence), first_frame(sequence)
     light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
-    plate_of = identities(sequence)
     conversion = _Conversion(light, _scale(light, options), options, first, plate_of)
     pending = {target: position for position, target in enumerate(targets)}
     skipped = () if options.overwrite else tuple(target for target in targets if target.exists())
+    show_progress(progress, len(skipped), len(targets))
     check_finished(((target, plate_of(pending.pop(target))) for target in skipped), light, options.depth)
     failures: dict[Path, CRFNetError] = {}
     elsewhere: list[Path] = []  # finished by another process meanwhile
@@ -103,7 +103,6 @@ def linearize_plates(
         (target, partial(conversion.write, position, frame_path(sequence, position), load, target))
         for (target, position), load in zip(pending.items(), loaders, strict=True)
     )
-    show_progress(progress, len(skipped), len(targets))
     with closing(finished(jobs, workers or _workers(first))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
             if problem := future.exception():

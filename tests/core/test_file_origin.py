@@ -38,7 +38,8 @@ def test_shape_of_the_picture(width, height, shape):
         (1024, 768, OWN_CAMERA | {"exif_size": (1024, 768)}, False),  # the camera's before small size
         (1280, 853, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),
         (324, 324, OWN_CAMERA | {"exif_size": (2160, 2160)}, True),
-        (7008, 4400, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),  # made larger, and cut
+        (7008, 4400, OWN_CAMERA | IJG | {"exif_size": (3504, 2336)}, True),  # made larger, and cut
+        (7008, 4400, OWN_CAMERA | {"exif_size": (3504, 2336)}, None),  # cameras do not enlarge
         (2000, 2000, OWN_CAMERA | {"exif_size": (3504, 2336)}, None),  # cut
         (3504, 2336, OWN_CAMERA | {"exif_size": (3520, 2346)}, None),  # cut by a few pixels
         (3504, 2336, OWN_CAMERA | {"exif_size": (160, 120)}, False),  # of the thumbnail
@@ -70,6 +71,7 @@ def test_scaled_or_not(width, height, fields, is_scaled):
         (IJG | {"make": "Apple", "model": "iPhone 6", "has_jfif": True}, None),
         *((OWN_CAMERA | {"has_adobe": True}, True), (OWN_CAMERA | {"software": "darktable 3.4"}, True)),
         *((OWN_CAMERA | {"exif_size": (7008, 4672)}, True), (IJG, True), (IJG_FINE, None)),
+        (OWN_CAMERA | {"exif_size": (570, 375)}, False),  # of a preview
         (OWN_CAMERA | {"raw_file": "DSC_0001.JPG"}, False),  # named where Lightroom saves its ratings
         (OWN_CAMERA | {"raw_file": "DSC_0001.NEF", "history": ("Adobe DNG Converter",)}, False),
         *(({"luma_table": OWN_TABLE}, None), ({}, None), ({"file_format": "PNG"}, None)),

@@ -4,8 +4,8 @@ import numpy as np
 import OpenImageIO as oiio
 
 from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.movies.source import find_source
 from crfnet.options import PlateOptions
-from crfnet.plates.frames import find_frames
 from crfnet.plates.linear import linear_targets, linearize_plates
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
@@ -18,8 +18,8 @@ SMALL = np.random.default_rng(0).integers(0, 256, (70, 90, 4), dtype=np.uint8)
 
 
 def linearize(plates, out, lut, *, frames=None, workers=None, progress=None, **options):
-    """Linearize the file or the sequence `plates` into `out`; `options` are as of `PlateOptions`."""
-    sequence = find_frames(plates, frames)
+    """Linearize the file, the sequence or the movie `plates` into `out`; `options` are as of `PlateOptions`."""
+    sequence = find_source(plates, frames)
     targets = linear_targets(out, sequence)
     return linearize_plates(sequence, targets, lut, PlateOptions(**options), workers=workers, progress=progress)
 

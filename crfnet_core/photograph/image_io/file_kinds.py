@@ -48,7 +48,7 @@ def file_kind(path: Path) -> str:
     if path.is_dir():
         raise PhotoError("photograph_is_folder", path=path)
     if not path.is_file():
-        raise PhotoError("no_such_photograph", path=path)
+        raise PhotoError("not_a_file" if path.exists() else "no_such_photograph", path=path)
     with path.open("rb") as file:
         head = file.read(_HEAD)
         brands = _brands(head, file) if head[4:8] == b"ftyp" else ()

@@ -195,7 +195,7 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
         if kind == "JPEG XL":
-            header = _with_exif(header, path)
+            header = _with_boxes(header, path)
         if kind in LAST_ALPHA_KINDS:
             header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
@@ -213,13 +213,21 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         source.close()
 
 
-def _with_exif(header: Any, path: Path) -> Any:
-    """Return the header of a JPEG XL file with its EXIF, which OpenImageIO leaves out; a codestream has no boxes."""
-    with suppress(ValueError), path.open("rb") as file:
-        if file.read(1) != b"\xff":
-            exif = find_box(path, b"Exif")
-            header = with_segments(header, {"exif": exif[4 + int.from_bytes(exif[:4]) :]})
-            header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
+def _with_boxes(header: Any, path: Path) -> Any:
+    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless they are compressed.
+
+    A codestream has no boxes.
+    """
+    with path.open("rb") as file:
+        if file.read(1) == b"\xff":
+            return header
+    segments = {"exif": b"", "xmp": b""}
+    for name, box in (("exif", b"Exif"), ("xmp", b"xml ")):
+        with suppress(ValueError):
+            segments[name] = find_box(path, box)
+    exif = segments["exif"]
+    header = with_segments(header, segments | {"exif": exif[4 + int.from_bytes(exif[:4]) :]})
+    header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
     return header
 
 

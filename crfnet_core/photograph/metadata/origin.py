@@ -104,6 +104,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_adobes = metadata.has_adobe or (bool(metadata.raw_file) and encoded_by is not False)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
+    metadata = replace(metadata, exif_size=_size_taken(metadata, is_as_written=encoded_by is False and not editor))
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
     origin = FileOrigin(
         device=device,
@@ -168,14 +169,14 @@ def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | N
 def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
     shorter, longer = size = tuple(sorted((metadata.width, metadata.height)))
-    exif_size = tuple(sorted(_size_taken(metadata) or size))
+    exif_size = tuple(sorted(metadata.exif_size or size))
     if shorter <= 0:
         return None
     if exif_size != size:
         return _is_scaled_from(exif_size, size)
     is_small, is_web_size = longer < SCALED_BELOW, longer in WEB_SIDES
     is_in_blocks = longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
-    names_size = _size_taken(metadata) is not None and metadata.has_camera
+    names_size = metadata.exif_size is not None and metadata.has_camera
     if names_size and not is_changed and (is_in_blocks or not (is_small or is_web_size)):
         return False  # not after a change: programs that scale may rewrite the size in EXIF
     if metadata.file_format in FOOTAGE:
@@ -186,11 +187,11 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     return False if is_native else None
 
 
-def _size_taken(metadata: FileMetadata) -> tuple[int, int] | None:
-    """Return the size of the picture in EXIF; None without one, and for the size of a thumbnail."""
-    size = metadata.exif_size
-    is_thumbnail = size is not None and max(size) * MOST_ENLARGED < max(metadata.width, metadata.height)
-    return None if is_thumbnail else size
+def _size_taken(metadata: FileMetadata, *, is_as_written: bool) -> tuple[int, int] | None:
+    """Return the size of the picture in EXIF; None without one, and for that of a preview: no camera enlarges."""
+    size, most = metadata.exif_size, 1 if is_as_written else MOST_ENLARGED
+    is_preview = size is not None and max(size) * most < max(metadata.width, metadata.height)
+    return None if is_preview else size
 
 
 def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | None:
@@ -238,7 +239,7 @@ def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     """Return the scaling in words; empty without any."""
     if not origin.is_scaled:
         return ""
-    size, before = (metadata.width, metadata.height), _size_taken(metadata)
+    size, before = (metadata.width, metadata.height), metadata.exif_size
     now = "{} x {} pixels".format(*size)
     if before and sorted(before) != sorted(size):
         return "scaled from {} x {} to {} after the camera wrote it".format(*before, now)

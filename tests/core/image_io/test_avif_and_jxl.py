@@ -89,16 +89,20 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
             read(tmp_path / "a.jxl")
 
 
-def test_exif_of_jpeg_xl_is_read_and_does_not_turn_it(tmp_path):
+def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
     codes, exif = colored_ramp(8), Image.Exif()
     exif[0x010F], exif[0x0112] = "Maker", 6
+    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
+    xmp += b'<rdf:Description xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="Adobe Photoshop 25.0"/>'
     content = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100").read_bytes()
-    box = bytes(4) + exif.tobytes()
+    boxes = {b"Exif": bytes(4) + exif.tobytes(), b"xml ": xmp + b"</rdf:RDF></x:xmpmeta>"}
+    added = b"".join(struct.pack(">I", 8 + len(box)) + kind + box for kind, box in boxes.items())
     at = content.index(b"jxlp") - 4
-    (tmp_path / "a.jxl").write_bytes(content[:at] + struct.pack(">I", 8 + len(box)) + b"Exif" + box + content[at:])
+    (tmp_path / "a.jxl").write_bytes(content[:at] + added + content[at:])
     values = read_codes(tmp_path / "a.jxl")
     np.testing.assert_array_equal(values.codes, codes)
-    assert (values.metadata.make, values.header.get_int_attribute("Orientation")) == ("Maker", 1)
+    assert (values.metadata.make, values.metadata.software) == ("Maker", "Adobe Photoshop 25.0")
+    assert values.header.get_int_attribute("Orientation") == 1
 
 
 def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():

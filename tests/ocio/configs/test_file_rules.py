@@ -31,6 +31,8 @@ def space_of(pattern, path):
             ["plate01.jpeg", "aplate01.jpg", "plate01.jpg.exr", "plate01.jpg/b.jpg", "plate011.jpg", "plate01xjpg"],
         ),
         ("shot.#.png", ["shot.1.png", "a/SHOT.01001.PNG"], ["shot.png", "shot..png", "shot.v2.png", "shot.1.2.png"]),
+        ("shot.#.png", ["shot.-0001.png"], ["shot.--1.png", "shot-0001.png"]),
+        ("shot#.png", ["shot0001.png"], ["shot-0001.png"]),
         ("shot_??.*", ["shot_ab.tif", "shot_01.a.b"], ["shot_1.tif", "shot_abc.tif", "shot_a/.tif"]),
         ("Größe (1).jpg", ["größe (1).JPG".replace("ö", "ö"), "x/Größe (1).jpg"], ["Größe 1.jpg", "Größe (1)jpg"]),
         ("a+b[1]^$|{2}.jpg", ["A+B[1]^$|{2}.JPG"], ["aab1.jpg"]),
@@ -72,7 +74,7 @@ def test_names_that_somebody_gave_are_his(name):
     ("name", "pattern"),
     [
         ("plate01.jpg", "plate01.jpg"),
-        ("shot.0001.jpg", "shot.#.jpg"),
+        *(("shot.0001.jpg", "shot.#.jpg"), ("shot.-0001.jpg", "shot.#.jpg")),
         ("shot.1.jpg", "shot.1.jpg"),
         ("a#1.0001.jpg", "a?1.#.jpg"),
         ("noextension", "noextension"),

@@ -2,6 +2,7 @@
 
 import functools
 import json
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -81,6 +82,15 @@ def test_anything_else_is_refused(tmp_path, name, content, code):
     path.mkdir() if content is None else path.write_text(content)
     with refused(ConfigError, code):
         read_looks(path)
+
+
+@pytest.mark.parametrize("name", ["", "a.json", "a.spi1d"])
+def test_a_document_that_may_not_be_read_is_not_passed_over(tmp_path, monkeypatch, name):
+    """Not even in a folder of several, or next to a LUT: a plate, or its exposure, would be lost."""
+    write_look(tmp_path, ["a.jpg"])
+    monkeypatch.setattr("crfnet.configs.looks.read_json", Mock(side_effect=PermissionError(13, "Permission denied")))
+    with refused(ConfigError, "not_opened"):
+        read_looks(tmp_path / name)
 
 
 @pytest.mark.parametrize(

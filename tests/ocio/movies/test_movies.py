@@ -1,6 +1,8 @@
 """Frames of movies: all of them, in order, upright; and movies that are refused in one line."""
 
 import os
+from itertools import permutations
+from threading import Event
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from crfnet.movies.library import is_movie
 from crfnet.movies.stream import read_stream
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, run_ffmpeg, write_movie
+from tests.helpers.plates import LUT, attributes, linearize, read_exr
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -106,6 +109,13 @@ def test_frames_are_chosen_and_missing_ones_named(movie):
     assert bars(frames) == [9, 20]
     assert list(decoded(frames.movie, [])) == []
     assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
+
+
+def test_a_movie_is_hashed_while_it_is_decoded(movie, tmp_path, monkeypatch):
+    begun = Event()
+    monkeypatch.setattr("crfnet.plates.frames.file_sha256", lambda _: str(begun.wait(10)))
+    linearize(movie, tmp_path / "%d.exr", LUT, frames="3", progress=lambda *_: begun.set())
+    assert attributes(read_exr(tmp_path / "3.exr")[1])["crfnet:plate"] == "True 3"
 
 
 def damage(path, number, start=0.0, end=1.0, *, before=0):
@@ -224,20 +234,38 @@ def test_frames_are_upright(tmp_path, degrees, quarters):
     np.testing.assert_array_equal(frame.samples, np.rot90(next(stored.loaders([0]))().samples, quarters))
 
 
+FORMS = {"libx264": "yuv420p", "mjpeg": "yuvj420p"}
+
+
+@pytest.mark.parametrize(("codec", "other"), [*permutations(FORMS)])
 @pytest.mark.parametrize(("name", "side"), [("a.mov", 64), ("a.mkv", 480)])
-def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path, name, side):
+def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path, name, side, codec, other):
     with av.open(str(tmp_path / name), "w") as container:
-        thumbnail, film = container.add_stream("mjpeg", rate=24), container.add_stream("libx264", rate=24)
-        thumbnail.width, thumbnail.height, thumbnail.pix_fmt = side, side, "yuvj420p"
+        thumbnail, film = container.add_stream(other, rate=24), container.add_stream(codec, rate=24)
         (film if side < 96 else thumbnail).disposition = av.stream.Disposition.default
-        film.width, film.height, film.pix_fmt = 128, 96, "yuv420p"
-        for stream, form, count, size in ((thumbnail, "yuvj420p", 1, (side, side)), (film, "yuv420p", 12, (128, 96))):
-            for image in pictures(count, size):
-                frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form)
+        thumbnail.width, thumbnail.height, thumbnail.pix_fmt = side, side, FORMS[other]
+        film.width, film.height, film.pix_fmt = 128, 96, FORMS[codec]
+        for stream, count in ((thumbnail, 1), (film, 12)):
+            for image in pictures(count, (stream.width, stream.height)):
+                frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=stream.pix_fmt)
                 container.mux(stream.encode(frame))
             container.mux(stream.encode())
     result = read_stream(tmp_path / name)
-    assert (result.codec, result.picture.size, result.frame_count) == ("H.264", (128, 96), 12)
+    assert (result.picture.size, result.frame_count) == ((128, 96), 12)
+
+
+def test_a_cover_is_not_a_film(tmp_path):
+    with av.open(str(tmp_path / "a.mp4"), "w") as container:
+        sound, cover = container.add_stream("aac", rate=8000, layout="mono"), container.add_stream("mjpeg", rate=24)
+        cover.width, cover.height, cover.pix_fmt = 128, 96, "yuvj420p"
+        cover.disposition = av.stream.Disposition.attached_pic
+        frame = av.AudioFrame.from_ndarray(np.zeros((1, 1024), np.float32), format="fltp", layout="mono")
+        frame.rate = 8000
+        container.mux([*sound.encode(frame), *sound.encode()])
+        picture = av.VideoFrame.from_ndarray(next(pictures(1)), format="rgb24").reformat(format="yuvj420p")
+        container.mux([*cover.encode(picture), *cover.encode()])
+    assert is_movie(tmp_path / "a.mp4")
+    assert refusal(tmp_path / "a.mp4") == "no_video"
 
 
 def test_alpha_is_kept(tmp_path):

@@ -1,16 +1,18 @@
 """Read one frame: encoded EXR files, and everything else as a photograph."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
 from crfnet.errors import PlateError
+from crfnet.pipeline.photographs import unreadable_reason
 from crfnet.plates import frame_files
 from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.colorimetry import DISPLAY_P3
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.images import write_image
@@ -91,6 +93,25 @@ def test_an_exr_of_code_values_is_refused(tmp_path, depth, code):
     path = write_image(tmp_path / "a.exr", values, names="RGB", depth=depth)
     with refused(PlateError, code, path=path):
         read_frame(path, is_encoded=True)
+
+
+@pytest.mark.parametrize("channel", range(4))
+def test_an_exr_with_values_that_are_not_finite_is_refused(tmp_path, channel):
+    values = np.full((4, 4, 4), 0.5, np.float32)
+    values[0, :2, channel], values[1, 1], values[2, 2, 3] = (np.nan, np.inf), -np.inf, 0
+    path = write_image(tmp_path / "a.exr", values)
+    with refused(PlateError, "exr_not_finite", path=path, count=3):
+        read_frame(path, is_encoded=True)
+
+
+@pytest.mark.skipif(not Path("/dev/null").exists(), reason="needs a device")
+@pytest.mark.parametrize("name", ["a.exr", "a.png"])
+def test_devices_are_not_opened(tmp_path, name):
+    """Nor pipes, which would block."""
+    (tmp_path / name).symlink_to("/dev/null")
+    with refused(CRFNetError, "not_a_file", path=tmp_path / name):
+        read_frame(tmp_path / name, is_encoded=True)
+    assert "device" in unreadable_reason(tmp_path / name)
 
 
 def test_a_file_tagged_linear_is_refused(tmp_path):

@@ -77,7 +77,7 @@ def test_associated_alpha_is_divided_out_before_the_lut(tmp_path, out, oiiotool,
 def test_encoded_exr_uses_the_domain_of_the_lut(tmp_path, out):
     lut = Lut1D(np.linspace(-0.25, 2, 10), domain=(-0.125, 1.125))
     values = np.append(np.full((300, 3, 3), 9, np.float32), np.full((302, 3, 3), 0.5, np.float32), axis=0)
-    values[-1] = [[-1, -0.125, 0], [1, 1.0625, 9], [np.nan, 0.5, 1.125]]
+    values[-1] = [[-1, -0.125, 0], [1, 1.0625, 9], [-1e9, 0.5, 1.125]]
     linearize(write_image(tmp_path / "a.exr", values), out / "a.exr", lut, depth="float", is_encoded=True)
     pixels, expected = read_exr(out / "a.exr")[0], [[-0.25, -0.25, -0.025], [1.775, 1.8875, 2], [-0.25, 0.875, 2]]
     np.testing.assert_allclose(pixels[-1], expected, atol=1e-6)
