@@ -84,7 +84,7 @@ SENTENCES: Mapping[str, str] = {
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",
     "color_space_refused": "{name}: cannot be added to the config ({reason})",
-    "config_aliases": "{path}: has more than {most} YAML aliases, each of which may multiply it; write them out",
+    "config_too_many": "{path}: has more than {most} {kind}, for which OpenColorIO may take hours; make it smaller",
     "config_archive": "{path}: is an archive; unpack it with OpenColorIO's ocioarchive and name the config in it",
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",
     "config_invalid": "{path}: not written, OpenColorIO refuses it ({reason})",

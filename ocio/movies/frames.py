@@ -132,7 +132,7 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
 
 
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
-    """Refuse a frame of another size, coding, turn or interlacing than the first."""
+    """Refuse a frame of another size, coding, turn, interlacing or color than the first."""
     picture = Picture.from_frame(movie.path, frame, movie.codec, movie.container)
     if picture != movie.picture:
         raise PlateError("movie_changes", path=movie.path, frame=number, form=picture, first=movie.picture)

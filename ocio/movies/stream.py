@@ -70,6 +70,7 @@ class Picture:
     coding: Coding  # of RGB
     turn: Turn  # by which a stored picture becomes upright
     is_interlaced: bool
+    tags: ColorTags  # primaries and transfer function
 
     @classmethod
     def from_frame(cls, path: Path, frame: VideoFrame, codec: str, container: ColorCodes) -> Picture:
@@ -78,7 +79,8 @@ class Picture:
         coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])
         if coding is None:
             raise undecodable(path, f"pixels of {frame.format.name}, matrix {codes[0]} of H.273")
-        return cls(frame.width, frame.height, frame.format.name, coding, _turn(path, frame), frame.interlaced_frame)
+        turn, tags = _turn(path, frame), cicp_tags(codes[2:])
+        return cls(frame.width, frame.height, frame.format.name, coding, turn, frame.interlaced_frame, tags)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -88,7 +90,9 @@ class Picture:
     def __str__(self) -> str:
         """Return the form in words."""
         fields = "interlaced" if self.is_interlaced else "progressive"
-        return f"{self.size[0]} x {self.size[1]}, {self.samples}, {self.coding}, {fields}"
+        primaries = self.tags.primaries.name if self.tags.primaries else self.tags.source
+        parts = (f"{self.size[0]} x {self.size[1]}", self.samples, self.coding, fields, primaries, self.tags.transfer)
+        return ", ".join(str(part) for part in parts if part)
 
 
 @dataclass(frozen=True)
@@ -262,7 +266,7 @@ def _described(
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
         rate=Fraction(stream.average_rate or 0),
-        color=_color_tags(stated_codes(frame, codes), metadata),
+        color=_color_tags(picture.tags, metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
@@ -271,9 +275,8 @@ def _described(
     )
 
 
-def _color_tags(codes: ColorCodes, metadata: Mapping[str, str]) -> ColorTags:
+def _color_tags(tags: ColorTags, metadata: Mapping[str, str]) -> ColorTags:
     """Return primaries and transfer function as the movie tags them, or else the log curve that metadata names."""
-    tags = cicp_tags(codes[2:])
     texts = {name: "".join(metadata.get(name, "").lower().split()) for name in LOG_TAGS}
     curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
     if tags.transfer or not curves:

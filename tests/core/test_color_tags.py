@@ -138,6 +138,10 @@ class TestIccProfiles:
         curves = {f"{name}TRC": curve for name in "rgb"}
         assert read_icc(matrix_profile(REC2020, version=version, **curves)).transfer == ("linear" if is_linear else "")
 
+    def test_a_curve_that_falls_is_a_negative(self):
+        curves = {f"{name}TRC": b"curv" + struct.pack(">II2H", 0, 2, 65535, 0) for name in "rgb"}
+        assert read_icc(matrix_profile(REC2020, **curves)).transfer == "a negative"
+
     def test_an_encoding_is_known_by_the_name_of_the_profile(self):
         name = "S-Log3 S-Gamut3.Cine".encode("utf-16-be")
         described = b"mluc" + struct.pack(">4xII4sII", 1, 12, b"enUS", len(name), 28) + name
@@ -251,6 +255,10 @@ def test_cicp_primaries_make_a_white(code):
     assert cicp_tags((code, 1)) == ColorTags(primaries, "", "CICP")
 
 
-@pytest.mark.parametrize("codes", [(), (1,), (2, 2), (0, 0), (3, 3, 0, 0), (200, 200)])
+@pytest.mark.parametrize("codes", [(), (1,), (2, 2), (0, 0), (3, 3, 0, 0)])
 def test_codes_that_are_unspecified_say_nothing(codes):
     assert cicp_tags(codes) == ColorTags()
+
+
+def test_cicp_primaries_of_no_camera_are_unknown_and_named():
+    assert cicp_tags((10, 17)) == ColorTags(None, "SMPTE ST 428-1", "CICP primaries 10")

@@ -11,7 +11,7 @@ C: Chromaticity = (0.310, 0.316)
 DCI: Chromaticity = (0.314, 0.351)
 _SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
 
-#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified"; 10, CIE XYZ, is not an RGB of a camera.
+#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 10, CIE XYZ, is not an RGB of a camera.
 PRIMARIES = {
     1: REC709,
     4: Primaries("BT.470 M", (0.67, 0.33), (0.21, 0.71), (0.14, 0.08), C),
@@ -25,8 +25,11 @@ PRIMARIES = {
     22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
 }
 
+#: Code points without a meaning there: reserved and unspecified.
+UNSPECIFIED = (0, 2, 3)
+
 #: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
-TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
+TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 17: "SMPTE ST 428-1", 18: "HLG"}
 
 #: Transfer characteristic in a DPX header (SMPTE ST 268) -> the encoding that follows. "Linear" proves nothing: ffmpeg
 #: writes it into every DPX, and Blender into all but log.
@@ -60,6 +63,8 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
     if len(codes) < 2:
         return ColorTags()
     primaries, transfer = PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], "")
+    if not primaries and codes[0] not in UNSPECIFIED:
+        return ColorTags(None, transfer, f"CICP primaries {codes[0]}")
     return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
 
 

@@ -29,8 +29,8 @@ def _hlg_stops(codes: Float64Array) -> Float64Array:
     return np.asarray(np.log2(np.where(codes <= 0.5, codes**2 / 3, above)))
 
 
-#: The source of tags from an ICC profile, and from one without primaries.
-SOURCE, TABLES = "ICC profile", "ICC profile of tables"
+#: The source of tags from an ICC profile, from one that works by tables, and from one that gives no primaries else.
+SOURCE, TABLES, DAMAGED = "ICC profile", "ICC profile of tables", "damaged ICC profile"
 
 #: Largest difference in XYZ from named primaries by which a profile's colorants count as theirs. Known profiles differ
 #: by up to 0.0002 (rounding to four digits, other values of D65); two of the named spaces by 0.06 or more.
@@ -85,7 +85,8 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     element = _CICP.search(profile)
     codes = cicp_tags(element[1]) if element else ColorTags()
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
-    return ColorTags(primaries, codes.transfer or transfer, SOURCE if primaries else TABLES)
+    source = SOURCE if primaries else TABLES if b"A2B" in profile else DAMAGED
+    return ColorTags(primaries, codes.transfer or transfer, source)
 
 
 def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
@@ -99,6 +100,8 @@ def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
         return ""
     if np.ptp(lightness) <= LEAST_LIGHTNESS:
         return ""
+    if lightness[0] > lightness[-1]:
+        return "a negative"
     if _is_linear(lightness):
         return "linear"
     is_compared = (lightness > _COMPARED[0]) & (lightness < _COMPARED[1])

@@ -10,7 +10,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet.configs.files import MAX_CONFIG_SIZE, load_config, write_config
+from crfnet.configs.files import MAX_CONFIG_SIZE, MOST_SPACES, load_config, write_config
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
@@ -114,8 +114,9 @@ class TestLoading:
             (b"no config", "config_refused"),
             (bytes(MAX_CONFIG_SIZE + 1), "config_unreadable"),
             (PORTABLE.replace("name: crfnet", "name: Voigtl\u00e4nder").encode("latin-1"), "config_unreadable"),
-            *((aliases(3).encode(), "config_aliases"), (aliases(9).encode(), "config_aliases")),
-            (aliases(9).encode("utf-16-le"), "config_aliases"),
+            *((aliases(3).encode(), "config_too_many"), (aliases(9).encode(), "config_too_many")),
+            (aliases(9).encode("utf-16-le"), "config_too_many"),
+            (PORTABLE.encode() + b"\n  - !<ColorSpace>\n    name: x" * MOST_SPACES, "config_too_many"),
             (variables({f"k{n:02}": f"$k{n + 1:02}%k{n + 1:02}%" for n in range(40)}), "config_variables"),
             (variables({"A": "$B$B", "B": "${A}${A}"}), "config_variables"),
             (variables({"D": "$"} | {f"k{n:02}": f"${{D}}k{n + 1:02}" * 2 for n in range(40)}), "config_variables"),

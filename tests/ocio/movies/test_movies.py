@@ -202,6 +202,8 @@ CHANGES = {
     "range": {"tags": {"color_range": 2, "colorspace": 1}},
     "interlacing": {"is_interlaced": True},
     "size": {"size": (64, 48)},
+    "transfer": {"tags": {"color_trc": 16}},
+    "primaries": {"tags": {"color_primaries": 9}},
 }
 
 
