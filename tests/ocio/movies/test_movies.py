@@ -198,18 +198,20 @@ def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
     assert refusal(path) == "movie_undecodable"
 
 
+REC709 = {"color_range": 1, "colorspace": 1, "color_primaries": 1, "color_trc": 1}
+
 CHANGES = {
-    "range": {"tags": {"color_range": 2, "colorspace": 1}},
+    "range": {"tags": REC709 | {"color_range": 2}},
     "interlacing": {"is_interlaced": True},
     "size": {"size": (64, 48)},
-    "transfer": {"tags": {"color_trc": 16}},
-    "primaries": {"tags": {"color_primaries": 9}},
+    "transfer": {"tags": REC709 | {"color_trc": 16}},
+    "primaries": {"tags": REC709 | {"color_primaries": 9}},
 }
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_midway_is_refused(tmp_path, change):
-    first = {"tags": {"color_range": 1, "colorspace": 1}} if change == "range" else {}
+    first = {"tags": REC709} if "tags" in CHANGES[change] else {}
     parts = [write_movie(tmp_path / f"{n}.ts", 6, **each) for n, each in enumerate((first, CHANGES[change]))]
     (tmp_path / "a.ts").write_bytes(b"".join(part.read_bytes() for part in parts))
     frames = MovieFrames.find(tmp_path / "a.ts")
