@@ -42,7 +42,7 @@ class PlateOptions:
     primaries: str = PRIMARIES[0]  # of the encoded plate; "auto" goes by its tags
     output_space: str = OUTPUT_SPACES[0]
     overwrite: bool = False  # whether existing files may be replaced
-    is_encoded: bool = False  # whether OpenEXR plates that do not state their encoding hold encoded values
+    is_encoded: bool = False  # accepts OpenEXR plates that do not state their encoding, and tags that say linear
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,5 +1,6 @@
 """Read one frame of a plate: its encoded samples, its alpha and its header; or its color tags alone."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
@@ -19,8 +20,8 @@ from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
 
-#: Names of the one channel of a gray picture, and values of colorInteropID that say nothing of an encoding.
-GRAY, UNTAGGED = ("Y", "R"), ("", "unknown", "data")
+#: Names of the one channel of a gray picture, and colorInteropID of encoded values, as the Color Interop Forum has it.
+GRAY, ENCODED = ("Y", "R"), re.compile(r"(srgb|g\d\d|pq|hlg)_\w+_(scene|display)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,5 +177,5 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY])
     ):
         raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
-    if space in UNTAGGED and not is_encoded:
+    if not ENCODED.fullmatch(space) and not is_encoded:
         raise PlateError("exr_untagged", path=path)

@@ -16,6 +16,7 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, check_target
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.recognition import refuse_linear
 from crfnet_core.types import Progress, cores, show_progress
 
 from ..errors import PlateError, error_of_file
@@ -90,6 +91,8 @@ def linearize_plates(
     if options.is_encoded and isinstance(sequence, FrameSequence):
         sequence = replace(sequence, is_encoded=True)
     plate_of, first = identities(sequence), first_frame(sequence)
+    if first and not options.is_encoded:
+        refuse_linear(first.frame.color, first.path)
     light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first, plate_of)
     pending = {target: position for position, target in enumerate(targets)}

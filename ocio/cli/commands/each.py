@@ -35,7 +35,7 @@ def plate_options(arguments: argparse.Namespace) -> PlateOptions:
         primaries=arguments.primaries,
         output_space=arguments.output_space,
         overwrite=arguments.overwrite,
-        is_encoded=getattr(arguments, "encoded", False),
+        is_encoded=arguments.ignore_metadata or getattr(arguments, "encoded", False),
     )
 
 

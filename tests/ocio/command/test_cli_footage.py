@@ -40,9 +40,10 @@ def test_other_pictures_are_answered_with_what_helps(crfnet, tmp_path, pixels, k
         ("scan.dpx", {"dpx__Transfer": "Logarithmic"}, "tagged_encoding"),
         ("pq.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "tagged_color_space"),
         ("hlg.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "tagged_color_space"),
+        ("linear.png", {"CICP": (oiio.TypeDesc("int[4]"), (1, 8, 0, 1))}, "tagged_linear"),
     ],
 )
-def test_a_frame_that_calls_itself_log_is_refused_and_nothing_is_written(
+def test_a_frame_that_calls_itself_log_or_linear_is_refused_and_nothing_is_written(
     crfnet, fixed_model, tmp_path, command, name, tag, code
 ):
     path = as_file(tmp_path / name, ordinary_picture(), **tag)

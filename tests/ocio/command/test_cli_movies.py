@@ -116,6 +116,14 @@ def test_log_footage_is_refused_with_its_color_space_unless_metadata_is_ignored(
 
 
 @needs_av
+def test_a_movie_that_is_linear_already_is_refused_with_a_lut_too(crfnet, look, tmp_path):
+    path = write_movie(tmp_path / "linear.mp4", size=(320, 240), tags={"color_trc": 8})
+    command = ("linearize", path, "--lut", look / "plate.spi1d", "--out", tmp_path / "%d.exr")
+    assert crfnet(*command).refusal == "tagged_linear"
+    assert crfnet(*command, "--ignore-metadata").code == 0
+
+
+@needs_av
 def test_the_config_of_a_movie_takes_all_of_its_frames_for_linear(crfnet, fixed_model, movie, tmp_path):
     chosen = ("--output-space", "ACEScg", "--primaries", "p3")
     assert crfnet("estimate", movie, "--out", tmp_path, "--model", fixed_model, "--no-sheet", *chosen).code == 0

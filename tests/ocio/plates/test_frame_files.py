@@ -57,7 +57,8 @@ def test_an_exr_without_colors_is_refused(tmp_path, channels):
 
 
 @pytest.mark.parametrize(
-    ("space", "code"), [("lin_rec709_scene", "plate_is_linear"), ("", "exr_untagged"), ("unknown", "exr_untagged")]
+    ("space", "code"),
+    [("lin_rec709_scene", "plate_is_linear"), *((name, "exr_untagged") for name in ("", "unknown", "ACEScg", "g22"))],
 )
 @pytest.mark.parametrize("read", [read_frame, read_color_tags])
 def test_an_exr_whose_tag_does_not_say_that_it_is_encoded_is_refused(tmp_path, read, space, code):
