@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -87,6 +88,11 @@ def distinct_names(name: str, hint: str = "") -> Iterator[str]:
         yield f"{name} ({hint})"
     for number in itertools.count(2):
         yield f"{name} ({hint} {number})" if hint else f"{name} ({number})"
+
+
+def folded(name: str) -> str:
+    """Return a name as macOS and Windows compare names: without upper case, its accents in one form of Unicode."""
+    return unicodedata.normalize("NFC", name).casefold()
 
 
 def check_targets(

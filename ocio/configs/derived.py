@@ -18,7 +18,7 @@ from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
-from ..output_files import all_or_none, check_targets, distinct_names
+from ..output_files import all_or_none, check_targets, distinct_names, folded
 from .file_rules import LINEAR_SUFFIX, is_counter_name
 from .files import write_config
 from .looks import Look
@@ -31,7 +31,7 @@ class DerivedConfig:
     """A config that was written with plates added: its path, all files written, and the plates.
 
     `without_rule` holds the file names, or patterns, that have no rule: many cameras give such a name, or several
-    plates have it.
+    plates have it, or the base has no space for it.
     """
 
     path: Path
@@ -60,7 +60,7 @@ def write_derived_config(
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
     spaces, common = _new_spaces(base, looks, others or {})
-    shared = add_plate_color_spaces(config, spaces)
+    without = add_plate_color_spaces(config, spaces)
     check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
     files = (target, *(folder / name for name in luts))
@@ -70,7 +70,7 @@ def write_derived_config(
             write_lut(staged / name, lut)
         write_config(staged / CONFIG_NAME, config, check=check)
     plates = tuple(plate for plate in plates_in_config(config) if plate.name in check)
-    return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *shared))))
+    return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *without))))
 
 
 def _new_spaces(
@@ -92,11 +92,11 @@ def _new_spaces(
 def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
     """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
     file, config = Path(look.space.lut_file), base.config
-    taken = {name.casefold() for name in (*names, *_other_names(config))}
+    taken = {folded(name) for name in (*names, *_other_names(config))}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
-    used = {name.casefold() for name in lut_files} | _names_on_path(base)  # as macOS and Windows compare them
-    lut_file = next(name for name in stems if name.casefold() not in used)
-    free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
+    used = {folded(name) for name in lut_files} | _names_on_path(base)
+    lut_file = next(name for name in stems if folded(name) not in used)
+    free = (name for name in distinct_names(look.space.name, look.folder) if folded(name) not in taken)
     name = next(name for name in free if config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file)
 
@@ -134,12 +134,12 @@ def _absolute_paths(folder: str, home: Path) -> list[str]:
 
 
 def _names_on_path(base: ConfigSource) -> set[str]:
-    """Return the names of all files in the folders of a config's search path, without case."""
+    """Return the names of all files in the folders of a config's search path, folded."""
     names, context = set[str](), base.config.getCurrentContext()
     if base.path is None:
         return names
     for folder in [*context.getSearchPaths()] or ["."]:
         with suppress(OSError):
             files = (base.path.parent / context.resolveStringVar(folder)).iterdir()
-            names |= {file.name.casefold() for file in files}
+            names |= {folded(file.name) for file in files}
     return names

@@ -59,7 +59,7 @@ def rule_regex(patterns: Iterable[str]) -> str:
 
     In the patterns, `*` stands for any characters, `?` for any character and `#` for a number of any length, also below
     0 behind a dot; none of them matches a separator of folders. A pattern holds for full names, in any folder, in upper
-    and lower case (ASCII).
+    and lower case.
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
@@ -133,10 +133,12 @@ def _pattern_regex(pattern: str) -> str:
 
 
 def _letter_regex(letter: str) -> str:
-    """Return the regular expression of a character: an ASCII letter in both cases, anything else as it is.
+    """Return the regular expression of a character: a letter in both cases, anything else as it is.
 
-    In UTF-8 other letters are several bytes, and std::regex takes each byte in brackets for a separate character.
+    In UTF-8 other letters than ASCII are several bytes, which std::regex takes for separate characters in brackets.
     """
     if letter.isascii() and letter.isalpha():
         return f"[{letter.lower()}{letter.upper()}]"
+    if letter.lower() != letter.upper():
+        return f"({'|'.join(dict.fromkeys((letter, letter.lower(), letter.upper())))})"
     return "\\" + letter if letter in ".^$+(){}|[]" else letter

@@ -82,25 +82,28 @@ class PlateColorSpace:
 
 
 def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace]) -> tuple[str, ...]:
-    """Add plates' color spaces and file rules to a config, in place; return the patterns that several plates have.
+    """Add plates' color spaces and file rules to a config, in place; return the patterns that get no rule.
 
     After the response and the exposure, a plate is converted from its primaries to linear Rec.709, and then as
     `rec709_to_reference` says. Profile version 1 has neither aliases nor file rules: they are left out there, and so is
-    an exposure of 0. Linear files get a rule where the config takes OpenEXR files for another space than theirs. Raise
-    a ConfigError if the config has one of the names already, or cannot convert linear Rec.709 to its reference.
+    an exposure of 0. Linear files get a rule where the config takes OpenEXR files for another space than theirs and has
+    theirs; files that several plates have get none. Raise a ConfigError if the config has one of the names already, or
+    cannot convert linear Rec.709 to its reference.
     """
     usual = color_space_of_file(config, USUAL_LINEAR_FILE) if config.getMajorVersion() >= 2 else ""
-    shared = list[str]()
+    without = list[str]()
     for space in spaces:
         _add_color_space(config, space)
         if config.getMajorVersion() < 2:
             continue
         linear = space.linear_primaries and linear_space_name(config, space.linear_primaries)
-        if linear and linear != usual and space.linear_patterns:
-            add_file_rule(config, space.name + LINEAR_SUFFIX, linear, space.linear_patterns)
-        if space.file_patterns and not add_file_rule(config, space.name, space.name, space.file_patterns):
-            shared += space.file_patterns
-    return tuple(dict.fromkeys(shared))
+        rules = [(space.name, space.name, space.file_patterns)]
+        if space.linear_primaries and linear != usual:
+            rules.insert(0, (space.name + LINEAR_SUFFIX, linear or "", space.linear_patterns))
+        for name, target, patterns in rules:
+            if patterns and not (target and add_file_rule(config, name, target, patterns)):
+                without += patterns
+    return tuple(dict.fromkeys(without))
 
 
 def _add_color_space(config: OCIO.Config, space: PlateColorSpace) -> None:

@@ -19,7 +19,7 @@ from ..defaults import CONFIG_NAME
 from ..errors import PlateError
 from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import EstimateOptions, PlateOptions
-from ..output_files import LONGEST_STEM, check_targets, plain_stem
+from ..output_files import LONGEST_STEM, check_targets, folded, plain_stem
 from ..plates.light import PlateLight, is_finished
 from ..report.words import result_line
 from .estimates import check_network, load_camera_response, response_lut
@@ -180,7 +180,7 @@ def _distinct_stems(
     """Return a stem for each photograph whose files belong to no other one, even on systems that take A for a."""
 
     def keys(folder: Path, stem: str) -> list[str]:
-        return [str(path).casefold() for path in batch.targets(folder, stem)]
+        return [folded(str(path)) for path in batch.targets(folder, stem)]
 
     owners: dict[str, str] = {}
     for record in records.values():

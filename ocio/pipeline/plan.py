@@ -10,7 +10,7 @@ from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
 from ..errors import ConfigError, PlateError
 from ..options import OutputOptions, PlateOptions
-from ..output_files import OutputFiles, check_targets
+from ..output_files import OutputFiles, check_targets, folded
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ def plan_outputs(
     files = OutputFiles.named(folder, photos, outputs)
     owners: dict[str, Path] = {}
     for target, photo in zip(files.linear, photos, strict=False):  # without linear plates, no pairs
-        if (other := owners.setdefault(target.name.casefold(), photo)) != photo:
+        if (other := owners.setdefault(folded(target.name), photo)) != photo:
             raise PlateError("one_name", first=other, second=photo, name=target.name)
     space = PlateColorSpace.from_outputs(files, photos[0], file_pattern=sequence)
     return replace(plan_files(files, photos, plates, space), sequence=sequence)

@@ -11,6 +11,7 @@ import pytest
 
 from crfnet.configs.file_rules import FAMILY
 from crfnet.defaults import ESTIMATES
+from crfnet.output_files import folded
 from tests.helpers.folders import listed, tree
 from tests.helpers.records import records_in
 
@@ -42,6 +43,10 @@ def test_two_of_one_name_get_files_of_their_own(estimate, photographs, tmp_path,
         luts = {Path(record["photograph"]).name: record["lut"] for record in records_in(tmp_path / "out")}
         assert (luts["a.jpg"], luts[name].casefold()) == ("a.spi1d", "a_2.spi1d")
         assert sorted(map(str.casefold, configured(tmp_path / "out" / "config.ocio"))) == ["a", "a_2"]
+
+
+def test_names_that_differ_in_case_or_in_the_form_of_an_accent_only_are_one():
+    assert folded("PLA\u0308TE") == folded("pl\u00e4te") != folded("plate")
 
 
 def test_a_photograph_that_is_given_twice_is_one(estimate, photographs, tmp_path, monkeypatch):

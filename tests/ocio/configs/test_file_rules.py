@@ -13,6 +13,8 @@ from crfnet.configs.file_rules import (
     rule_regex,
 )
 from crfnet.configs.portable import portable_config
+from tests.helpers.configs import loaded
+from tests.helpers.looks import add, write_look
 
 
 def space_of(pattern, path):
@@ -34,7 +36,7 @@ def space_of(pattern, path):
         ("shot.#.png", ["shot.-0001.png"], ["shot.--1.png", "shot-0001.png"]),
         ("shot#.png", ["shot0001.png"], ["shot-0001.png"]),
         ("shot_??.*", ["shot_ab.tif", "shot_01.a.b"], ["shot_1.tif", "shot_abc.tif", "shot_a/.tif"]),
-        ("Größe (1).jpg", ["größe (1).JPG".replace("ö", "ö"), "x/Größe (1).jpg"], ["Größe 1.jpg", "Größe (1)jpg"]),
+        ("Größe (1).jpg", ["größe (1).JPG".replace("ö", "ö"), "x/GRÖSSE (1).jpg"], ["Größe 1.jpg", "Größe (1)jpg"]),
         ("a+b[1]^$|{2}.jpg", ["A+B[1]^$|{2}.JPG"], ["aab1.jpg"]),
     ],
 )
@@ -94,3 +96,10 @@ def test_the_linear_files_of_thousands_of_photographs_make_a_rule_that_opencolor
     config = portable_config([])
     add_file_rule(config, "plate", "ACEScct", linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)]))
     assert config.getColorSpaceFromFilepath("/x/4999_linear.exr")[0] == "ACEScct"
+
+
+def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path):
+    (config := loaded(studio)).removeColorSpace("Linear AdobeRGB")
+    studio.write_text(config.serialize())
+    done = add(studio, tmp_path / "new", write_look(tmp_path / "look", interop_id="lin_adobergb_scene"))
+    assert done.without_rule == ("plate01_linear.exr", "plate01.#.exr")

@@ -78,3 +78,8 @@ def test_an_alias_that_is_taken_is_left_out():
 def test_names_that_are_taken_are_refused(name):
     with refused(ConfigError, "color_space_exists"):
         portable_config([SPACE, PlateColorSpace(name, "a.spi1d")])
+
+
+def test_hosts_find_plates_and_files_by_their_category():
+    config = portable_config([])
+    assert all("file-io" in space.getCategories() for space in config.getColorSpaces())
