@@ -30,6 +30,8 @@ SENTENCES: Mapping[str, str] = {
     " encoded, as a camera or a program wrote them for a display",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
     "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
+    "finished_outdated": "{path}: is there already, but its plate has changed since, or was another one{more}; delete"
+    " it, or write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
@@ -131,6 +133,7 @@ SENTENCES: Mapping[str, str] = {
     "not_records": "{path}: holds other lines than records of photographs; choose another folder",
     "other_options": "{path}: has {photo} with other options or another response; give the same, or choose another"
     " folder",
+    "photograph_changed": "{path}: has changed since its files were written; delete them, or choose another folder",
     "photographs_failed": "{failed} of {count} photographs failed; the first: {problem}",
     "process_died": "a process died, perhaps for lack of memory; run the same again",
     "reader_failed": "{path}: {kind} ({reason})",

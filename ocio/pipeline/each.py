@@ -123,7 +123,8 @@ class LinearBatch(Batch):
         lut, estimate = self.response() or self._estimated(photograph)
         with output_folder(targets[0].parent):
             written = linearize_plates(photograph, targets, lut, self.plates, workers=1)
-        return task.record(written.light, estimate, linear=targets)
+        record = task.record(written.light, estimate, linear=targets)
+        return replace(record, left_alone=bool(written.skipped))
 
     def _estimated(self, photograph: FrameSequence) -> tuple[AnyLut, ResponseEstimate]:
         """Return the response estimated from a photograph."""

@@ -2,9 +2,10 @@
 
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
-from crfnet_core.files import read_json
+from crfnet_core.files import file_sha256, read_json
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
 from ..errors import PlateError
@@ -33,10 +34,22 @@ def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
 
 def unique(photographs: Iterable[Path]) -> list[Path]:
     """Return photographs without repetitions, perhaps by another way to their folder."""
-    first: dict[str, Path] = {}
+    first: dict[Path, Path] = {}
     for photo in photographs:
-        first.setdefault(os.path.normpath(photo.absolute()), photo)
+        first.setdefault(real_place(photo), photo)
     return list(first.values())
+
+
+def real_place(photo: Path) -> Path:
+    """Return the absolute path of a photograph, whose folder may be reached by links; a link to a file stays one."""
+    return Path(os.path.realpath(photo.parent), photo.name)
+
+
+def content_digest(photo: Path) -> str:
+    """Return the SHA-256 of a photograph; an empty text if it cannot be read, which its reader explains."""
+    with suppress(OSError):
+        return file_sha256(photo) if photo.is_file() else ""
+    return ""
 
 
 def unreadable_reason(photo: Path) -> str:

@@ -30,6 +30,7 @@ class PhotographRecord:
 
     photograph: str
     place: str
+    sha256: str = ""
     options: str = ""
     folder: str = ""
     lut: str = ""
@@ -44,6 +45,7 @@ class PhotographRecord:
     primaries: Mapping[str, Any] | None = None
     primaries_source: str = ""
     summary: str = ""
+    left_alone: bool = False
     error: str = ""
 
     @classmethod
@@ -68,6 +70,11 @@ class PhotographRecord:
         if self.primaries is None:
             return PlatePrimaries(None, self.primaries_source)
         return PlatePrimaries(Primaries.from_dict(self.primaries), self.primaries_source)
+
+    @property
+    def line(self) -> str:
+        """The result in one line of words, or why there is none."""
+        return self.error or self.summary + "; already there and left alone" * self.left_alone
 
     @property
     def stem(self) -> str:

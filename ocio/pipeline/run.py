@@ -10,10 +10,10 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Progress, cores, show_progress
 
-from ..errors import PlateError, error_of_file
+from ..errors import PlateError
 from ..output_files import output_folder
 from .batch import Batch, Task, plan_tasks
-from .photographs import unreadable_reason
+from .photographs import content_digest, unreadable_reason
 from .records import PhotographRecord
 from .workers import worker_pool
 
@@ -58,16 +58,24 @@ def run_batch(
     records = batch.records.read()
     tasks = plan_tasks(batch, photographs, records)
     with output_folder(batch.out):
-        records = {} if batch.plates.overwrite else records
-        todo = [task for task in tasks if not task.is_done(records.get(task.place))]
-        done = len(tasks) - len(todo)
-        show_progress(progress, done, len(tasks))
+        known = [] if batch.plates.overwrite else [_known(task, records.get(task.place)) for task in tasks]
+        ended = {record.place: record for record in known if record}
+        todo = [task for task in tasks if task.place not in ended]
+        show_progress(progress, len(ended), len(tasks))
         for record in _ended(todo, workers or cores(), scheduler):
             batch.records.append(record)
-            records[record.place] = record
-            done += 1
-            show_progress(progress, done, len(tasks))
-    return batch.finished([records[task.place] for task in tasks])
+            ended[record.place] = record
+            show_progress(progress, len(ended), len(tasks))
+    return batch.finished([ended[task.place] for task in tasks])
+
+
+def _known(task: Task, record: PhotographRecord | None) -> PhotographRecord | None:
+    """Return the record of a photograph that is done, or has changed since; None if there is work."""
+    if record and task.is_done(record):
+        return replace(record, left_alone=True)
+    if record and task.is_outdated(record):  # its record stays, so that the next run says the same
+        return task.failure(PlateError("photograph_changed", path=task.photo))
+    return None
 
 
 def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
@@ -94,14 +102,14 @@ def _recorded(task: Task) -> PhotographRecord:
             raise PlateError("unreadable", path=task.photo, reason=reason)
         return _done_once(task)
     except BaseException as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
-        error = str(error_of_file(problem, task.photo))
-        return PhotographRecord(photograph=str(task.photo), place=task.place, options=task.options, error=error)
+        return task.failure(problem)
 
 
 def _done_once(task: Task) -> PhotographRecord:
     """Do a task; if another run has just written its files, return the record that it is about to append."""
     try:
-        return _record_of_existing(task) or task.batch.done(task)
+        content = content_digest(task.photo)
+        return _record_of_existing(task) or replace(task.batch.done(task), sha256=content)
     except CRFNetError:
         for _ in range(RECORD_TRIALS if _existing(task) else 0):
             record = task.batch.records.read().get(task.place)
