@@ -68,7 +68,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
-    "lut_of_codes": "{path}: the LUT takes code values up to {last:g}; write it for brightness from 0 to 1",
+    "lut_of_codes": "{path}: the LUT is for code values from {low:g} to {high:g}; write it for brightness from 0 to 1",
     "lut_of_no_numbers": "a LUT needs numbers, found {kind}",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
