@@ -14,11 +14,10 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO
 
-import numpy as np
-
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.files import parse_json
 from crfnet_core.locks import lock
+from crfnet_core.types import number_of
 
 from ..errors import PlateError
 from ..plates.primaries import PlatePrimaries
@@ -53,15 +52,13 @@ class PhotographRecord:
         """Return the record of a line, without unknown entries; what is not a record raises errors of Python."""
         known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
-        record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
+        record = cls(**{**known, "exposure": number_of(entry.get("exposure", 0.0))})
         paths = [record.folder, record.lut, record.linear]
         texts = [*paths, record.photograph, record.place, record.error, record.plate.name]
         if not all(isinstance(text, str) for text in texts):
             raise TypeError("a name is not a text")
         if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
             raise ValueError("a path leads elsewhere")  # files there might be replaced
-        if (primaries := record.plate.primaries) and not np.isfinite(np.linalg.inv(primaries.to_xyz())).all():
-            raise ValueError("these are not primaries")
         return record
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crfnet_core.colorimetry import CORNERS
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import Camera
 
@@ -77,12 +78,11 @@ def camera_summary(camera: Camera) -> dict[str, Any]:
 def _light_document(light: PlateLight) -> dict[str, Any]:
     """Return the primaries, the exposure and the space of linear plates, ready for JSON."""
     primaries, gray = light.plate.primaries, linear_gray(light.lut)
-    corners = ("red", "green", "blue", "white")
     return {
         "primaries": {
             "name": light.plate.name,
             "source": light.plate.source,
-            **({corner: rounded(getattr(primaries, corner)) for corner in corners} if primaries else {}),
+            **({corner: rounded(getattr(primaries, corner)) for corner in CORNERS} if primaries else {}),
         },
         "exposure": {
             "stops": rounded(light.stops),

@@ -80,6 +80,7 @@ CHANGES = (
     {"brightness": [0, 1, 0.5]},
     {"shape_stops": -1},
     {"scale_stops": 1e9},
+    {"scale_stops": True},
     {"iso": [0]},
     {"iso": 5},
     {"warnings": 5},

@@ -142,6 +142,7 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
     [
         {"exposure": 10**400},
         {"exposure": "much"},
+        {"exposure": True},
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
         {"primaries": {"name": "mine"} | {key: [0.3, 0.3] for key in ("red", "green", "blue", "white")}},
         *({name: 1} for name in ("photograph", "place")),
