@@ -60,7 +60,7 @@ SENTENCES: Mapping[str, str] = {
     "not_written": "{path}: cannot be written ({reason})",
     "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
-    "not_numbers": "a response needs numbers, found {kind}",
+    "not_numbers": "a response or a LUT needs numbers, found {kind}",
     "brightness_codes": "found values up to {found:g}, but brightness and irradiance lie in [0, 1]: divide code values"
     " by the largest code, such as 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",

@@ -63,13 +63,13 @@ SENTENCES: Mapping[str, str] = {
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
     "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code,"
     " such as 255",
+    "lut_damaged_since": "{path}: is damaged; run the same again, which estimates its photograph anew",
     "lut_domain": "a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}",
     "lut_domain_short": "the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1",
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
     "lut_of_codes": "{path}: the LUT is for code values from {low:g} to {high:g}; write it for brightness from 0 to 1",
-    "lut_of_no_numbers": "a LUT needs numbers, found {kind}",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
     " its decimals have points",

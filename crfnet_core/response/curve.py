@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, overload
@@ -10,7 +11,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.errors import CurveError
+from crfnet_core.errors import CRFNetError, CurveError
 from crfnet_core.types import EqualByFields, Float32Array, Float64Array, IndexArray
 
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
@@ -196,6 +197,17 @@ class ResponseCurve(EqualByFields):
         return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
 
 
+def numbers_of(values: ArrayLike, error: type[CRFNetError]) -> NDArray[Any]:
+    """Return values as an array; raise `error` if they are not numbers, not all there, or in rows of unequal length."""
+    kind = "rows of unequal length"
+    with suppress(ValueError):
+        numbers = np.asarray(values)
+        if numbers.dtype.kind in NUMBERS and not np.ma.is_masked(values):
+            return numbers
+        kind = "masked values" if np.ma.is_masked(values) else str(numbers.dtype)
+    raise error("not_numbers", kind=kind)
+
+
 def is_codes(values: NDArray[Any]) -> bool:
     """Return whether an array has the type of code values, even if all of them are 0 or 1, as in a black frame."""
     return values.dtype.kind == "u" and values.dtype.itemsize <= 2 and values.ndim > 0
@@ -213,9 +225,7 @@ class _PiecewiseLinear:
 
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
-        values = np.asarray(arguments)
-        if values.dtype.kind not in NUMBERS:
-            raise CurveError("not_numbers", kind=values.dtype)
+        values = numbers_of(arguments, CurveError)
         if self._most < np.inf and (largest := float(np.fmax.reduce(values, axis=None, initial=0))) > self._most:
             raise CurveError("brightness_codes", found=largest)
         if values.dtype.kind in "iu" and values.size and (is_codes(values) or values.max() > 1):

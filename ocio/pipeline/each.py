@@ -94,8 +94,9 @@ class EstimateBatch(Batch):
             try:
                 check[space.name] = read_lut(self.out / record.lut).channels[0]
                 spaces.append(with_light(space, record.exposure, record.plate, linear))
-            except LutError as problem:
-                damaged[record.place] = replace(record, error=str(problem))
+            except LutError:
+                error = str(LutError("lut_damaged_since", path=self.out / record.lut))
+                damaged[record.place] = replace(record, error=error)
         write_config(files.config, portable_config(spaces), check=check, overwrite=True)
         return damaged
 
