@@ -6,6 +6,7 @@ It needs matplotlib, which is an optional dependency.
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,11 +59,13 @@ STYLE: dict[Any, Any] = {
 
 
 def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1) -> None:
-    """Write the picture of an estimate as PNG; the same input gives the same bytes.
+    """Write the picture of an estimate as PNG; of a stored camera's response, nothing is shown that it does not rest on.
 
     `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. Raise
     PlateError if the file is there already or cannot be written.
     """
+    if estimate.camera:
+        estimate = replace(estimate, model="", windows=())
     with sheet_figure(path) as figure:
         _draw_heading(figure, estimate)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
@@ -136,7 +139,7 @@ def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:
 
 def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
     """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
-    _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed")
+    _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed" if estimate.windows else "The photograph")
     for window in estimate.windows:
         if window.photo == 0:
             axes.add_patch(_outline(window.window, is_kept=window.kept, width=1.8, color="#000000"))
