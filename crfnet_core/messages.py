@@ -17,7 +17,7 @@ SENTENCES: Mapping[str, str] = {
     "camera_version": "{path}: has camera_version {version}, needed is {needed}; update this program",
     "damaged_calibration": "{path}: is damaged ({reason}); calibrate again",
     "damaged_camera": "{path}: is damaged ({reason}); restore or remove it",
-    "no_camera": "there is no camera {name!r} in {folder}",
+    "no_camera": "there is no camera {name!r} in {folders}",
     "not_a_calibration": "{path}: is not the JSON file of a calibration; calibrate the camera first",
     "not_a_camera": "{path}: is not the JSON file of a camera; restore or remove it",
     "other_camera": "the photograph is of {other}, but {name!r} is {camera}",
@@ -155,7 +155,7 @@ SENTENCES: Mapping[str, str] = {
     "other_schema": "the estimate has schema_version {found}, this version reads {known}: update it",
     # estimate: warnings; where JSON has them, their text does not change
     "answer_of_windows": "the mean of the windows' answers, as in the CRF-net paper: on photographs of real cameras it"
-    " is worse (E_est 2.34, 0.233 stop) than the mean of other cameras (1.21, 0.105), so another model is the default",
+    " is worse (E_est 2.52, 0.235 stop) than the mean of other cameras (1.27, 0.102), so another model is the default",
     "as_written": "{text}",
     "clipped": "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure",
     "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop"
