@@ -59,10 +59,10 @@ STYLE: dict[Any, Any] = {
 
 
 def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1) -> None:
-    """Write the picture of an estimate as PNG; of a stored camera's response, nothing is shown that it does not rest on.
+    """Write the picture of an estimate as PNG; of a stored camera's response, without windows and model.
 
-    `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. Raise
-    PlateError if the file is there already or cannot be written.
+    `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. The
+    same input gives the same bytes. Raise PlateError if the file is there already or cannot be written.
     """
     if estimate.camera:
         estimate = replace(estimate, model="", windows=())
