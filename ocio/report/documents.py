@@ -1,6 +1,6 @@
 """Estimates, plates and LUTs as documents: mappings ready for JSON."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -106,6 +106,8 @@ def file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
     }
 
 
-def rounded(values: ArrayLike) -> Any:
-    """Return a number, or nested lists of numbers, rounded to `DECIMALS` decimals."""
+def rounded(values: ArrayLike | Mapping[str, ArrayLike]) -> Any:
+    """Return a number, nested lists of numbers, or numbers by name, rounded to `DECIMALS` decimals."""
+    if isinstance(values, Mapping):
+        return {name: rounded(value) for name, value in values.items()}
     return np.round(np.asarray(values, dtype=np.float64), DECIMALS).tolist()
