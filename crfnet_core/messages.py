@@ -61,8 +61,7 @@ SENTENCES: Mapping[str, str] = {
     "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
     "not_numbers": "a response or a LUT needs numbers, found {kind}",
-    "brightness_codes": "found values up to {found:g}, but brightness and irradiance lie in [0, 1]: divide code values"
-    " by the largest code, such as 255",
+    "brightness_codes": "found values up to {found:g}, not in [0, 1]: divide code values by the largest code, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
     "curve_exponent": "a gamma must be above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",

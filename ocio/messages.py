@@ -24,7 +24,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
     "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
-    "exr_untagged": "{path}: does not say whether its values are linear, as most EXR files; state it if they are encoded",
+    "exr_untagged": "{path}: does not say whether it is linear, as most EXR files; state it if its values are encoded",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
     "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "finished_outdated": "{path}: is of another plate, or older than its plate{more}; delete it, or write elsewhere",

@@ -93,8 +93,8 @@ def _document(path: Path) -> dict[str, Any] | None:
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         names += [document["sequence"]] if "sequence" in document else []
         number_of(document["exposure"]["stops"], most=MOST_STOPS)
-        str(document["output_space"]["interop_id"])
         _primaries(document)
+        _linear_primaries(document)
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
@@ -125,5 +125,5 @@ def _primaries(document: dict[str, Any]) -> Primaries:
 
 def _linear_primaries(document: dict[str, Any]) -> Primaries | None:
     """Return the primaries of the plate's linear files, by the Color Interop Forum's name; None if it is not known."""
-    by_id = {primaries.interop_id: primaries for primaries in LINEAR_NAMES if primaries.interop_id}
-    return by_id.get(str(document["output_space"]["interop_id"]))
+    name = document["output_space"]["interop_id"]
+    return next((primaries for primaries in LINEAR_NAMES if name and primaries.interop_id == name), None)

@@ -104,6 +104,11 @@ class Task:
         """The files of this photograph alone."""
         return self.batch.targets(self.folder, self.stem)
 
+    @property
+    def existing(self) -> list[Path]:
+        """The ones that are there."""
+        return [path for path in self.targets if os.path.lexists(path)]
+
     def record(
         self, light: PlateLight, estimate: ResponseEstimate | None, *, lut: Path | None = None, linear: Sequence[Path]
     ) -> PhotographRecord:
@@ -150,8 +155,7 @@ class Task:
 
     def is_outdated(self, record: PhotographRecord) -> bool:
         """Return whether files are there that a record says to be those of other content of the photograph."""
-        is_there = record.sha256 and any(map(os.path.lexists, self.targets))
-        return bool(is_there) and content_digest(self.photo) not in ("", record.sha256)
+        return bool(record.sha256 and self.existing) and content_digest(self.photo) not in ("", record.sha256)
 
 
 def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]) -> list[Task]:
@@ -178,7 +182,7 @@ def _check_earlier(
     """Refuse results of other options, and configs without any record, which are not ours."""
     for task in tasks:
         record = records.get(task.place)
-        if record and not record.error and record.options != task.options and any(map(os.path.lexists, task.targets)):
+        if record and not record.error and record.options != task.options and task.existing:
             raise PlateError("other_options", path=batch.records.path, photo=task.photo)
     for config in configs:
         if config.exists() and not batch.records.path.exists():

@@ -11,6 +11,9 @@ from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 from ..errors import PlateError
 from ..output_files import SHEET_ENDING
 
+#: Whether a path leads to a folder; False if that cannot be seen, where `Path.is_dir` raises an error.
+is_folder = os.path.isdir
+
 
 def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
     """Return photographs, and where their files go, relative to the output folder `out`.
@@ -63,14 +66,6 @@ def unreadable_reason(photo: Path) -> str:
     except OSError as problem:
         return f"cannot be read ({problem.strerror}); check its permissions"
     return ""
-
-
-def is_folder(path: Path) -> bool:
-    """Return whether a path leads to a folder; False if that cannot be seen."""
-    try:
-        return path.is_dir()
-    except OSError:
-        return False
 
 
 def _photographs_below(folder: Path, out: str) -> list[Path]:

@@ -79,11 +79,11 @@ class PhotographRecord:
         return PurePosixPath(self.lut or self.linear).stem
 
 
+@dataclass(frozen=True)
 class RecordFile:
     """A file of records, which need not exist yet; its folder must before a record is appended."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    path: Path
 
     def read(self) -> dict[str, PhotographRecord]:
         """Return each photograph's last record by its place, without a line cut short; PlateError for another file."""

@@ -1,6 +1,5 @@
 """Do the tasks of a batch: in processes, recorded as they end, not stopped by a bad file."""
 
-import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, as_completed
@@ -111,7 +110,7 @@ def _done_once(task: Task) -> PhotographRecord:
         content = content_digest(task.photo)
         return _record_of_existing(task) or replace(task.batch.done(task), sha256=content)
     except CRFNetError:
-        for _ in range(RECORD_TRIALS if _existing(task) else 0):
+        for _ in range(RECORD_TRIALS if task.existing else 0):
             record = task.batch.records.read().get(task.place)
             if record and task.is_done(record):
                 return record
@@ -124,7 +123,7 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
 
     Raise PlateError if they belong to another photograph or program.
     """
-    there = [] if task.batch.plates.overwrite else _existing(task)
+    there = [] if task.batch.plates.overwrite else task.existing
     if not there:
         return None
     records = task.batch.records.read()
@@ -136,8 +135,3 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
     if is_owned or (record is None and len(there) < len(task.targets)):
         raise PlateError("file_exists", path=there[0])
     return None
-
-
-def _existing(task: Task) -> list[Path]:
-    """Return the files of a task that are there."""
-    return [path for path in task.targets if os.path.lexists(path)]

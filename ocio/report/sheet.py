@@ -23,7 +23,6 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
-from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
@@ -140,19 +139,12 @@ def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:
 def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
     """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
     _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed" if estimate.windows else "The photograph")
-    for window in estimate.windows:
-        if window.photo == 0:
-            axes.add_patch(_outline(window.window, is_kept=window.kept, width=1.8, color="#000000"))
-            axes.add_patch(_outline(window.window, is_kept=window.kept, width=0.9, color="#ffffff"))
-
-
-def _outline(window: Window, *, is_kept: bool, width: float, color: str) -> Rectangle:
-    """Return the outline of a window, in pixels of the photograph."""
-    style = "solid" if is_kept else (0, (2, 2))
-    corner = (window.x, window.y)
-    return Rectangle(
-        corner, window.extent, window.extent, fill=False, linewidth=width, linestyle=style, edgecolor=color
-    )
+    for each in estimate.windows:
+        if each.photo == 0:
+            place = (each.window.x, each.window.y), each.window.extent, each.window.extent
+            style: Any = "solid" if each.kept else (0, (2, 2))
+            for width, color in ((1.8, "#000000"), (0.9, "#ffffff")):
+                axes.add_patch(Rectangle(*place, fill=False, linewidth=width, linestyle=style, edgecolor=color))
 
 
 def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:
