@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, number_of
 
 #: CIE 1931 x and y.
 Chromaticity = tuple[float, float]
@@ -41,6 +41,10 @@ D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)
 
 
+#: The chromaticities of an RGB by name, and the largest condition of their matrix: 2 to 20 of known ones.
+CORNERS, MOST_CONDITION = ("red", "green", "blue", "white"), 1e4
+
+
 @dataclass(frozen=True)
 class Primaries:
     """The chromaticities of an RGB, CIE 1931 x and y."""
@@ -54,11 +58,16 @@ class Primaries:
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> Primaries:
-        """Return the primaries that `dataclasses.asdict` made an entry of, also after JSON."""
-        fields: dict[str, Any] = {
-            name: tuple(map(float, part)) if isinstance(part, list) else part for name, part in entry.items()
-        }
-        return cls(**fields)
+        """Return the primaries that `dataclasses.asdict` made an entry of, also after JSON.
+
+        Raise KeyError, TypeError or ValueError if it lacks one, or they are not chromaticities that span a space.
+        """
+        corners = [tuple(number_of(part, most=10) for part in entry[name]) for name in CORNERS]
+        red, green, blue, white = ((x, y) for x, y in corners)
+        primaries = cls(str(entry["name"]), red, green, blue, white, str(entry.get("interop_id", "")))
+        if not white[1] >= 0.01 or not np.linalg.cond(primaries.to_xyz()) < MOST_CONDITION:
+            raise ValueError("these are not primaries")
+        return primaries
 
     @property
     def corners(self) -> Float64Array:

@@ -17,7 +17,7 @@ SENTENCES: Mapping[str, str] = {
     "camera_version": "{path}: has camera_version {version}, needed is {needed}; update this program",
     "damaged_calibration": "{path}: is damaged ({reason}); calibrate again",
     "damaged_camera": "{path}: is damaged ({reason}); restore or remove it",
-    "no_camera": "there is no camera {name!r} in {folder}",
+    "no_camera": "there is no camera {name!r} in {folders}",
     "not_a_calibration": "{path}: is not the JSON file of a calibration; calibrate the camera first",
     "not_a_camera": "{path}: is not the JSON file of a camera; restore or remove it",
     "other_camera": "the photograph is of {other}, but {name!r} is {camera}",
@@ -60,9 +60,8 @@ SENTENCES: Mapping[str, str] = {
     "not_written": "{path}: cannot be written ({reason})",
     "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
-    "not_numbers": "a response needs numbers, found {kind}",
-    "brightness_codes": "found values up to {found:g}, but brightness and irradiance lie in [0, 1]: divide code values"
-    " by the largest code, such as 255",
+    "not_numbers": "a response or a LUT needs numbers, found {kind}",
+    "brightness_codes": "found values up to {found:g}, not in [0, 1]: divide code values by the largest code, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
     "curve_exponent": "a gamma must be above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",
@@ -156,7 +155,7 @@ SENTENCES: Mapping[str, str] = {
     "other_schema": "the estimate has schema_version {found}, this version reads {known}: update it",
     # estimate: warnings; where JSON has them, their text does not change
     "answer_of_windows": "the mean of the windows' answers, as in the CRF-net paper: on photographs of real cameras it"
-    " is worse (E_est 2.34, 0.233 stop) than the mean of other cameras (1.21, 0.105), so another model is the default",
+    " is worse (E_est 2.52, 0.235 stop) than the mean of other cameras (1.27, 0.102), so another model is the default",
     "as_written": "{text}",
     "clipped": "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure",
     "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop"

@@ -87,6 +87,13 @@ def plain_values(value: Any) -> Any:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
+def number_of(value: object, *, most: float = math.inf) -> float:
+    """Return a number of a document; raise ValueError for anything else, such as true, and beyond `most` or -`most`."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= most:
+        raise ValueError(f"{value!a:.20} is not a number from {-most} to {most}")
+    return float(value)
+
+
 def _same(one: Any, other: Any) -> bool:
     """Return whether two values of a field are equal."""
     if isinstance(one, np.ndarray | float):

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 
 SENTENCES: Mapping[str, str] = {
     # movies
-    "dolby_vision": "{path}: is Dolby Vision of profile {profile}, whose samples only its own decoder shows; give a"
-    " version in SDR",
+    "dolby_vision": "{path}: is Dolby Vision of profile {profile}, which only its own decoder shows; give one in SDR",
     "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
@@ -21,29 +20,25 @@ SENTENCES: Mapping[str, str] = {
     "exceeds_half": "values up to {peak:.6g} do not fit into half floats; ask for float, or for less exposure",
     "exposure_out_of_range": "an exposure of {stops:g} stops is out of range; give one like -2 or 1.5",
     "exr_channels": "{path}: needs channels R, G and B, or a gray one, of half or float samples; found {channels}",
-    "exr_codes": "{path}: most values lie above {most}, but encoded brightness lies in [0, 1]: divide code values by"
-    " the largest, such as 255",
+    "exr_codes": "{path}: most values lie above {most}; brightness lies in [0, 1]: divide code values by the largest",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
     "exr_not_finite": "{path}: {count} of its pixels hold NaN or infinity, for which no LUT has an entry; replace them",
     "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
-    "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
-    " encoded, as a camera or a program wrote them for a display",
+    "exr_untagged": "{path}: does not say whether it is linear, as most EXR files; state it if its values are encoded",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
     "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
-    "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
-    " plate.%04d.png or plate.####.png",
+    "finished_outdated": "{path}: is of another plate, or older than its plate{more}; delete it, or write elsewhere",
+    "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or one like plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
     "no_placeholder": "{path}: is one name for {count} frames; give a name with a placeholder, such as plate.%04d.exr",
     "no_such_frames": "{path}: frames that exist: {frames}; check the name and the frames",
-    "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
-    " plate.####.png",
+    "no_such_plate": "{path}: does not exist; check the name, or give a sequence: plate.%04d.png or plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
     "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
-    "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
-    " state the primaries of all",
+    "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
     "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",
@@ -60,18 +55,16 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code,"
-    " such as 255",
+    "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code",
+    "lut_damaged_since": "{path}: is damaged; run the same again, which estimates its photograph anew",
     "lut_domain": "a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}",
     "lut_domain_short": "the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1",
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
-    "lut_of_codes": "{path}: the LUT takes code values up to {last:g}; write it for brightness from 0 to 1",
-    "lut_of_no_numbers": "a LUT needs numbers, found {kind}",
+    "lut_of_codes": "{path}: the LUT is for code values from {low:g} to {high:g}; write it for brightness from 0 to 1",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
-    "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
-    " its decimals have points",
+    "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",
@@ -88,14 +81,12 @@ SENTENCES: Mapping[str, str] = {
     "config_archive": "{path}: is an archive; unpack it with OpenColorIO's ocioarchive and name the config in it",
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",
     "config_invalid": "{path}: not written, OpenColorIO refuses it ({reason})",
-    "config_not_built_in": "{name}: is not built into this OpenColorIO; known are {known}",
     "config_reads_device": "{path}: names {file} as a LUT, which is not a file; choose another config",
     "config_refused": "{path}: OpenColorIO refuses this config ({reason}); mend it or choose another",
     "config_unknown": "{name}: is not a config, a built-in config's name or a Blender with one; built in are {known}",
     "config_unreadable": "{path}: cannot be read ({reason}); choose another config",
     "config_variable_unset": "{name}: the environment variable {variable} is not set; name a config",
-    "config_variables": "{path}: declares more than {most} variables, or some that multiply one another; write their"
-    " values out",
+    "config_variables": "{path}: declares more than {most} variables, or some that multiply; write their values out",
     "config_without_rec709": (
         "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one of them"
     ),
@@ -122,16 +113,15 @@ SENTENCES: Mapping[str, str] = {
     "not_writable": "{path}: is not writable; choose another folder for the output",
     "one_name": "{first} and {second} would both be written as {name}; rename one",
     "replaces_photograph": "{path}: is one of the photographs and would be replaced; choose another folder",
-    "variables_in_path": "{path}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"
-    " folder",
+    "variables_in_path": "{path}: OpenColorIO takes $ and % for variables and finds no LUT; choose another folder",
     # pipeline: many photographs
     "movie_in_batch": "{path}: is a movie; linearize it by itself",
     "no_dask": "a scheduler needs Dask: pip install 'crfnet[cluster]'",
     "no_memory": "{path}: not enough memory",
     "no_scheduler": "{address}: no Dask scheduler answers there ({reason}); check the address",
     "not_records": "{path}: holds other lines than records of photographs; choose another folder",
-    "other_options": "{path}: has {photo} with other options or another response; give the same, or choose another"
-    " folder",
+    "other_options": "{path}: has {photo} with other options or another response; give these, or choose another folder",
+    "photograph_changed": "{path}: has changed since its files were written; delete them, or choose another folder",
     "photographs_failed": "{failed} of {count} photographs failed; the first: {problem}",
     "process_died": "a process died, perhaps for lack of memory; run the same again",
     "reader_failed": "{path}: {kind} ({reason})",

@@ -18,7 +18,7 @@ from crfnet_core.posterior import Family, LikelyKind, Verdict
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.statistics.windows import Window
-from crfnet_core.types import EqualByFields, Float64Array, plain_values
+from crfnet_core.types import EqualByFields, Float64Array, number_of, plain_values
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 SCHEMA_VERSION = 1
@@ -208,4 +208,4 @@ def _windows(documents: list[dict[str, Any]]) -> Iterator[WindowEstimate]:
 
 def _number(entry: float | None) -> float:
     """Return a number of a document; NaN for null."""
-    return math.nan if entry is None else float(entry)
+    return math.nan if entry is None else number_of(entry)

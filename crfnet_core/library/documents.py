@@ -11,7 +11,7 @@ from crfnet_core.errors import CameraError, CRFNetError, one_line
 from crfnet_core.files import read_json
 from crfnet_core.library.camera import Camera, CameraSettings, checked_name
 from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.types import plain_values
+from crfnet_core.types import number_of, plain_values
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 CAMERA_VERSION = 1
@@ -127,6 +127,6 @@ def _sensitivities(values: Iterable[Any]) -> tuple[int, ...]:
 
 def _deviation(value: Any) -> float:
     """Return a standard deviation in stops."""
-    if not 0 <= (deviation := float(value)) < LARGEST_DEVIATION:
+    if not 0 <= (deviation := number_of(value)) < LARGEST_DEVIATION:
         raise ValueError(f"a standard deviation of {value}")
     return deviation

@@ -90,7 +90,7 @@ class CameraLibrary:
         """Return the file of a camera that must be there."""
         if path := self.file_of(name):
             return path
-        raise CameraError("no_camera", name=name, folder=self.folder)
+        raise CameraError("no_camera", name=name, folders=self.folder)
 
     def _files(self) -> list[Path]:
         """Return the library's files in the order of their names; files being written begin with a dot."""
@@ -107,8 +107,11 @@ class CameraLibrary:
 
 def find_camera(name: str) -> Camera:
     """Return the user's camera of this name, else the shipped one. Raise CameraError as `CameraLibrary.get` does."""
-    user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    return (user if user.file_of(name) or not shipped.file_of(name) else shipped).get(name)
+    libraries = CameraLibrary.of_user(), CameraLibrary.shipped()
+    for library in libraries:
+        if library.file_of(name):
+            return library.get(name)
+    raise CameraError("no_camera", name=name, folders=" or ".join(str(library.folder) for library in libraries))
 
 
 def known_cameras() -> list[Camera]:

@@ -86,9 +86,9 @@ def findings(origin: FileOrigin) -> list[str]:
     """Return the rows of `FACTORS` that hold of a file."""
     is_still = origin.encoding != Encoding.MOVIE  # most movies are 16:9, and few name their camera
     rows = {
-        f"stated {origin.device or 'other'}": origin.is_told,
-        origin.device: not origin.is_told and origin.device != Device.UNKNOWN,
-        "no camera": is_still and not origin.camera and not origin.is_told,
+        f"stated {origin.device or 'other'}": origin.has_stated_device,
+        origin.device: not origin.has_stated_device and origin.device != Device.UNKNOWN,
+        "no camera": is_still and not origin.camera and not origin.has_stated_device,
         origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
         "developed": origin.is_developed,
         "editor": bool(origin.editor) and not origin.is_developed,

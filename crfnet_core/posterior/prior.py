@@ -58,7 +58,7 @@ class Prior:
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
             raise PriorError("bad_prior_families", path=path, families=", ".join(Family))
         numbers = [*shares.values(), evidence, lookalikes, plain]
-        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-3]):
+        if not all(type(number) in (int, float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-3]):
             raise PriorError("bad_prior_values", path=path)
         if lookalikes == 1:
             raise PriorError("bad_lookalikes", path=path)

@@ -16,11 +16,7 @@ def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 
 
 def brightness_percent(error: float) -> float:
-    """Return an estimation error as a root mean square in percent of the brightness range.
-
-    E_est is the Euclidean distance between two responses of `SAMPLES` samples, so the root mean square is
-    E_est / sqrt(SAMPLES).
-    """
+    """Return E_est, a distance between `SAMPLES` samples, as a root mean square in percent of the brightness range."""
     return float(100 * error / np.sqrt(SAMPLES))
 
 

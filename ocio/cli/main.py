@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -25,16 +26,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     It is 0, `BAD_INPUT`, `NOT_TRUSTED` with --strict, or 128 and the number of the signal that ended it.
     """
     complete_streams()
-    with own_stderr(), interruptible() as interruption:
+    with own_stderr(), interruptible() as caught:
         try:
             return _run(build_parser().parse_args(argv), sys.argv if argv is None else argv)
         except OSError as problem:  # of --help
             return _fail(problem)
         except BaseException as problem:  # an interrupted import raises all sorts of errors
-            if interruption.signal is None and not isinstance(problem, KeyboardInterrupt):
+            if not caught and not isinstance(problem, KeyboardInterrupt):
                 raise
             _print_error("crfnet: interrupted")
-            return interruption.exit_code
+            return 128 + next(iter(caught), signal.SIGINT)
 
 
 def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:

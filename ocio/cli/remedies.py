@@ -22,6 +22,7 @@ REMEDIES: Mapping[str, str] = {
     "exr_untagged": "add --encoded",
     "finished_differs": "or add --overwrite",
     "finished_foreign": "or add --overwrite",
+    "finished_outdated": "or add --overwrite",
     "primaries_differ": "give them with --primaries",
     "primaries_unknown": "give them with --primaries",
     "single_file": "leave --frames out",

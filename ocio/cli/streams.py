@@ -6,14 +6,13 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
 
 
 def complete_streams() -> None:
     """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
-    sys.stdout = sys.stdout or _nowhere()
-    sys.stderr = sys.stderr or _nowhere()
-    for stream in (sys.stdout, sys.stderr):
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name) or Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays
+        setattr(sys, name, stream)
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
@@ -50,8 +49,3 @@ def shown(text: str) -> str:
     return "".join(
         character if character.isprintable() or "\ud800" <= character <= "\udfff" else "?" for character in text
     )
-
-
-def _nowhere() -> TextIO:
-    """Return a stream that takes everything and keeps nothing."""
-    return Path(os.devnull).open("w", encoding="utf-8")

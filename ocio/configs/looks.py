@@ -8,6 +8,7 @@ from typing import Any
 from crfnet_core.colorimetry import PHOTOGRAPHIC, REC709, Primaries
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import read_json
+from crfnet_core.types import number_of
 
 from ..defaults import ESTIMATES
 from ..errors import ConfigError, LutError
@@ -91,15 +92,15 @@ def _document(path: Path) -> dict[str, Any] | None:
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         names += [document["sequence"]] if "sequence" in document else []
-        is_bounded = abs(float(document["exposure"]["stops"])) <= MOST_STOPS
-        str(document["output_space"]["interop_id"])
-        _primaries(document).to_xyz()
+        number_of(document["exposure"]["stops"], most=MOST_STOPS)
+        _primaries(document)
+        _linear_primaries(document)
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     except PermissionError as problem:
         raise ConfigError("not_opened", path=path, reason=problem.strerror) from problem
     except (OSError, KeyError, ArithmeticError, TypeError, ValueError):
         return None
-    return document if is_named and is_bounded and document["photographs"] else None
+    return document if is_named and document["photographs"] else None
 
 
 def _is_file_name(name: str) -> bool:
@@ -119,13 +120,12 @@ def _primaries(document: dict[str, Any]) -> Primaries:
     entry = document["primaries"]
     if "red" not in entry:
         return REC709
-    red, green, blue, white = ((float(x), float(y)) for x, y in map(entry.get, ("red", "green", "blue", "white")))
-    primaries = Primaries(str(entry["name"]), red, green, blue, white)
+    primaries = Primaries.from_dict(entry)
     known = (each for each in PHOTOGRAPHIC.values() if replace(each, name=primaries.name, interop_id="") == primaries)
     return next(known, primaries)
 
 
 def _linear_primaries(document: dict[str, Any]) -> Primaries | None:
     """Return the primaries of the plate's linear files, by the Color Interop Forum's name; None if it is not known."""
-    by_id = {primaries.interop_id: primaries for primaries in LINEAR_NAMES if primaries.interop_id}
-    return by_id.get(str(document["output_space"]["interop_id"]))
+    name = document["output_space"]["interop_id"]
+    return next((primaries for primaries in LINEAR_NAMES if name and primaries.interop_id == name), None)

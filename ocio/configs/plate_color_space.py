@@ -160,8 +160,7 @@ class PlateInConfig:
 def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
     """Return the plates of a config, in its order, those that are hidden from menus, too."""
     names = config.getColorSpaceNames(OCIO.SEARCH_REFERENCE_SPACE_SCENE, OCIO.COLORSPACE_ALL)
-    spaces = map(config.getColorSpace, names)
-    return [_plate(config, space) for space in spaces if space.getFamily() == FAMILY]
+    return [_plate(config, space) for space in map(config.getColorSpace, names) if space.getFamily() == FAMILY]
 
 
 def _plate(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:

@@ -81,7 +81,7 @@ def _view_transform(config: OCIO.Config, space: str, name: str, *, is_rolled_off
     steps: list[OCIO.Transform] = [OCIO.GroupTransform(rest, inverse)] if rest else []
     if is_rolled_off:
         steps.append(roll_off())
-    steps += [OCIO.GroupTransform([response], inverse), *_codes_to_xyz(_primaries_matrix(config, rest))]
+    steps += [OCIO.GroupTransform([response], inverse), *_codes_to_xyz(config, rest)]
     transform = OCIO.ViewTransform(OCIO.REFERENCE_SPACE_SCENE)
     transform.setName(name)
     highlights = f"rolled off from {KNEE} of its white" if is_rolled_off else "clipped at its white"
@@ -90,18 +90,14 @@ def _view_transform(config: OCIO.Config, space: str, name: str, *, is_rolled_off
     return transform
 
 
-def _primaries_matrix(config: OCIO.Config, steps: Sequence[OCIO.Transform]) -> OCIO.Transform | None:
-    """Return the matrix from a plate's primaries to linear Rec.709; None if it has these already.
+def _codes_to_xyz(config: OCIO.Config, steps: Sequence[OCIO.Transform]) -> list[OCIO.Transform]:
+    """Return the transforms from a photograph's code values, by the sRGB curve, to CIE XYZ of a display.
 
-    After its LUT, a plate's color space is an exposure, perhaps this matrix, and the way from Rec.709.
+    `steps` of its color space are an exposure, perhaps a matrix to linear Rec.709, and the way from there.
     """
     steps = steps[: len(steps) - len(rec709_to_reference(config))]
-    return next((step for step in steps if isinstance(step, OCIO.MatrixTransform)), None)
-
-
-def _codes_to_xyz(primaries: OCIO.Transform | None) -> list[OCIO.Transform]:
-    """Return the transforms from a photograph's code values, by the sRGB curve, to CIE XYZ of a display."""
-    if primaries is None:
+    primaries = [step for step in steps if isinstance(step, OCIO.MatrixTransform)]
+    if not primaries:
         return [OCIO.BuiltinTransform(SRGB_DISPLAY, direction=OCIO.TRANSFORM_DIR_INVERSE)]
     curve = OCIO.ExponentWithLinearTransform(gamma=[2.4, 2.4, 2.4, 1], offset=[0.055, 0.055, 0.055, 0])
-    return [curve, primaries, matrix_transform(REC709.to_xyz())]
+    return [curve, *primaries, matrix_transform(REC709.to_xyz())]

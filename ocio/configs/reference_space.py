@@ -10,14 +10,8 @@ from ..errors import ConfigError
 
 #: Names and aliases of linear Rec.709 in common configs, the most specific first.
 LINEAR_REC709 = (
-    "lin_rec709_scene",
-    "lin_rec709_srgb",
-    "lin_rec709",
-    "lin_srgb",
-    "Linear Rec.709 (sRGB)",
-    "Linear Rec.709",
-    "Utility - Linear - Rec.709",
-    "Utility - Linear - sRGB",
+    *("lin_rec709_scene", "lin_rec709_srgb", "lin_rec709", "lin_srgb", "Linear Rec.709 (sRGB)", "Linear Rec.709"),
+    *("Utility - Linear - Rec.709", "Utility - Linear - sRGB"),
 )
 
 #: Primaries -> names, aliases and roles of the linear space with them in common configs: the Color Interop Forum's name

@@ -43,13 +43,9 @@ def find_config(name: str) -> ConfigSource:
         if not (value := os.environ.get(VARIABLE, "").strip()):
             raise ConfigError("config_variable_unset", name=name, variable=VARIABLE)
         return find_config(value)
-    if name.startswith(BUILT_IN):
-        return _built_in(name)
-    path = _config_file(Path(name).expanduser())
-    if path is None and (f"{BUILT_IN}{name}" in built_in_names()):
-        return _built_in(f"{BUILT_IN}{name}")
+    path = None if name.startswith(BUILT_IN) else _config_file(Path(name).expanduser())
     if path is None:
-        raise ConfigError("config_unknown", name=name, known=", ".join(built_in_names()))
+        return _built_in(name)
     if path.suffix.lower() == ".ocioz":
         raise ConfigError("config_archive", path=path)
     return ConfigSource(load_config(path), str(path), path)
@@ -71,11 +67,12 @@ def built_in_names() -> tuple[str, ...]:
 
 
 def _built_in(name: str) -> ConfigSource:
-    """Return a built-in config by its name with "ocio://"."""
+    """Return a built-in config by its name, with or without "ocio://"."""
+    full = BUILT_IN + name.removeprefix(BUILT_IN)
     try:
-        return ConfigSource(OCIO.Config.CreateFromFile(name), name, None)
-    except (OCIO.Exception, OCIO.ExceptionMissingFile):
-        raise ConfigError("config_not_built_in", name=name, known=", ".join(built_in_names())) from None
+        return ConfigSource(OCIO.Config.CreateFromFile(full), full, None)
+    except (OCIO.Exception, OCIO.ExceptionMissingFile, UnicodeError):
+        raise ConfigError("config_unknown", name=name, known=", ".join(built_in_names())) from None
 
 
 def _config_file(path: Path) -> Path | None:

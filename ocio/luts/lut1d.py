@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.response.curve import MOST_BRIGHTNESS, NUMBERS, ResponseCurve, is_codes
+from crfnet_core.response.curve import MOST_BRIGHTNESS, ResponseCurve, is_codes, numbers_of
 from crfnet_core.types import EqualByFields, Float64Array
 
 from ..defaults import LUT_LENGTH
@@ -231,9 +231,7 @@ def single_precision(values: ArrayLike) -> Float64Array:
 
 def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
     """Return float32 for half and single precision, float64 for everything else; refuse codes beyond `last`."""
-    numbers = np.asarray(pixels)
-    if numbers.dtype.kind not in NUMBERS:
-        raise LutError("lut_of_no_numbers", kind=numbers.dtype)
+    numbers = numbers_of(pixels, LutError)
     most = -1 if is_codes(numbers) and last < 255 else last
     if numbers.dtype.kind in "iu" and numbers.size and numbers.max() > most:
         raise LutError("lut_codes", largest=int(numbers.max()), last=last)

@@ -16,6 +16,10 @@ from .rgb_lut import AnyLut, RgbLut1D, lut_of_channels
 #: Largest irradiance of brightness 0, as a part of the irradiance of brightness 1.
 MOST_BLACK = 0.01
 
+#: Largest first and least last code value of a LUT file, as parts of white: black is 0.125 in V-Log, and white of video
+#: 0.92. All codes before or behind would be alike.
+MOST_FIRST, LEAST_LAST = 0.15, 0.9
+
 #: Largest mean of an inverse response, as a part of its range; the mean of linear light is 0.5, cameras have less.
 MOST_MEAN = 0.55
 
@@ -44,12 +48,15 @@ class ResponseFile:
 def read_response(path: str | Path) -> ResponseFile:
     """Return the response in a LUT file of either direction; a LUT that brightens is inverted.
 
-    Raises as `read_lut`, and a LutError if the LUT takes code values such as 0 to 255: brightness would be black.
+    Raises as `read_lut`, and a LutError if the code values of the LUT are such as 0 to 255, or only a part of 0 to 1.
     """
     path, table = Path(path), read_lut(path)
-    if not is_forward(table):
-        if table.domain[1] > MOST_BRIGHTNESS:
-            raise LutError("lut_of_codes", path=path, last=table.domain[1])
+    was_forward = is_forward(table)
+    ends = float(table.values[0].max()), float(table.values[-1].min())
+    low, high = ends if was_forward else table.domain
+    if low > MOST_FIRST or not LEAST_LAST <= high <= MOST_BRIGHTNESS:
+        raise LutError("lut_of_codes", path=path, low=low, high=high)
+    if not was_forward:
         return ResponseFile(path, table, table)
     codes = np.linspace(0, 1, LUT_LENGTH)
     inverse = lut_of_channels([Lut1D(strictly_increasing(each.apply_inverse(codes))) for each in table.channels])

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crfnet_core.response.curve import numbers_of
 from crfnet_core.types import Float64Array
 
 from ..errors import LutError
@@ -43,7 +44,7 @@ class RgbLut1D:
 
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
-        inputs = np.asarray(pixels)
+        inputs = numbers_of(pixels, LutError)
         return np.stack([lut.apply(inputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
 

@@ -16,14 +16,14 @@ from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes
 
 from ..defaults import CONFIG_NAME
-from ..errors import PlateError
+from ..errors import PlateError, error_of_file
 from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, folded, plain_stem
 from ..plates.light import PlateLight, is_finished
 from ..report.words import result_line
 from .estimates import check_network, load_camera_response, response_lut
-from .photographs import unreadable_reason
+from .photographs import content_digest, real_place, unreadable_reason
 from .records import PhotographRecord, RecordFile
 
 #: Bytes that a number behind a stem may need.
@@ -104,6 +104,11 @@ class Task:
         """The files of this photograph alone."""
         return self.batch.targets(self.folder, self.stem)
 
+    @property
+    def existing(self) -> list[Path]:
+        """The ones that are there."""
+        return [path for path in self.targets if os.path.lexists(path)]
+
     def record(
         self, light: PlateLight, estimate: ResponseEstimate | None, *, lut: Path | None = None, linear: Sequence[Path]
     ) -> PhotographRecord:
@@ -118,7 +123,7 @@ class Task:
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
-            summary=f"{self.photo.name}: linearized",
+            summary=f"{self.photo.name}: linear EXR",
         )
         if estimate is None:
             return record
@@ -134,13 +139,23 @@ class Task:
             summary=result_line(estimate, name=self.photo.name),
         )
 
+    def failure(self, problem: BaseException) -> PhotographRecord:
+        """Return the record of a problem; an interruption goes on."""
+        error = str(error_of_file(problem, self.photo))
+        return PhotographRecord(photograph=str(self.photo), place=self.place, options=self.options, error=error)
+
     def is_done(self, record: PhotographRecord | None) -> bool:
         """Return whether a record says that this photograph needs no work, and its files are there, frames whole."""
         if record is None or record.error or (record.folder, record.stem) != (self.folder.as_posix(), self.stem):
             return False
         if record.options != self.options or not all(path.exists() for path in self.targets):
             return False
-        return all(map(is_finished, (path for path in self.targets if path.suffix == ".exr")))
+        is_whole = all(is_finished(path) for path in self.targets if path.suffix == ".exr")
+        return is_whole and record.sha256 == content_digest(self.photo)
+
+    def is_outdated(self, record: PhotographRecord) -> bool:
+        """Return whether files are there that a record says to be those of other content of the photograph."""
+        return bool(record.sha256 and self.existing) and content_digest(self.photo) not in ("", record.sha256)
 
 
 def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]) -> list[Task]:
@@ -167,7 +182,7 @@ def _check_earlier(
     """Refuse results of other options, and configs without any record, which are not ours."""
     for task in tasks:
         record = records.get(task.place)
-        if record and not record.error and record.options != task.options and any(map(os.path.lexists, task.targets)):
+        if record and not record.error and record.options != task.options and task.existing:
             raise PlateError("other_options", path=batch.records.path, photo=task.photo)
     for config in configs:
         if config.exists() and not batch.records.path.exists():
@@ -210,5 +225,5 @@ def _stems(photo: Path) -> Iterator[str]:
 def place_of(photo: Path, out: Path) -> str:
     """Return the path from the output folder to a photograph, wherever a command runs and both are moved together."""
     with suppress(ValueError):  # of two drives
-        return Path(os.path.relpath(photo, out)).as_posix()
-    return photo.absolute().as_posix()
+        return Path(os.path.relpath(real_place(photo), os.path.realpath(out))).as_posix()
+    return real_place(photo).as_posix()

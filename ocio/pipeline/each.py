@@ -94,8 +94,9 @@ class EstimateBatch(Batch):
             try:
                 check[space.name] = read_lut(self.out / record.lut).channels[0]
                 spaces.append(with_light(space, record.exposure, record.plate, linear))
-            except LutError as problem:
-                damaged[record.place] = replace(record, error=str(problem))
+            except LutError:
+                error = str(LutError("lut_damaged_since", path=self.out / record.lut))
+                damaged[record.place] = replace(record, error=error)
         write_config(files.config, portable_config(spaces), check=check, overwrite=True)
         return damaged
 
@@ -123,7 +124,8 @@ class LinearBatch(Batch):
         lut, estimate = self.response() or self._estimated(photograph)
         with output_folder(targets[0].parent):
             written = linearize_plates(photograph, targets, lut, self.plates, workers=1)
-        return task.record(written.light, estimate, linear=targets)
+        record = task.record(written.light, estimate, linear=targets)
+        return replace(record, left_alone=bool(written.skipped))
 
     def _estimated(self, photograph: FrameSequence) -> tuple[AnyLut, ResponseEstimate]:
         """Return the response estimated from a photograph."""

@@ -2,13 +2,17 @@
 
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
-from crfnet_core.files import read_json
+from crfnet_core.files import file_sha256, read_json
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
 from ..errors import PlateError
 from ..output_files import SHEET_ENDING
+
+#: Whether a path leads to a folder; False if that cannot be seen, where `Path.is_dir` raises an error.
+is_folder = os.path.isdir
 
 
 def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
@@ -33,10 +37,22 @@ def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
 
 def unique(photographs: Iterable[Path]) -> list[Path]:
     """Return photographs without repetitions, perhaps by another way to their folder."""
-    first: dict[str, Path] = {}
+    first: dict[Path, Path] = {}
     for photo in photographs:
-        first.setdefault(os.path.normpath(photo.absolute()), photo)
+        first.setdefault(real_place(photo), photo)
     return list(first.values())
+
+
+def real_place(photo: Path) -> Path:
+    """Return the absolute path of a photograph, whose folder may be reached by links; a link to a file stays one."""
+    return Path(os.path.realpath(photo.parent), photo.name)
+
+
+def content_digest(photo: Path) -> str:
+    """Return the SHA-256 of a photograph; an empty text if it cannot be read, which its reader explains."""
+    with suppress(OSError):
+        return file_sha256(photo) if photo.is_file() else ""
+    return ""
 
 
 def unreadable_reason(photo: Path) -> str:
@@ -52,14 +68,6 @@ def unreadable_reason(photo: Path) -> str:
     except OSError as problem:
         return f"cannot be read ({problem.strerror}); check its permissions"
     return ""
-
-
-def is_folder(path: Path) -> bool:
-    """Return whether a path leads to a folder; False if that cannot be seen."""
-    try:
-        return path.is_dir()
-    except OSError:
-        return False
 
 
 def _photographs_below(folder: Path, out: str) -> list[Path]:

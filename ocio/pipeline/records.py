@@ -14,11 +14,10 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO
 
-import numpy as np
-
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.files import parse_json
 from crfnet_core.locks import lock
+from crfnet_core.types import number_of
 
 from ..errors import PlateError
 from ..plates.primaries import PlatePrimaries
@@ -30,6 +29,7 @@ class PhotographRecord:
 
     photograph: str
     place: str
+    sha256: str = ""
     options: str = ""
     folder: str = ""
     lut: str = ""
@@ -44,6 +44,7 @@ class PhotographRecord:
     primaries: Mapping[str, Any] | None = None
     primaries_source: str = ""
     summary: str = ""
+    left_alone: bool = False
     error: str = ""
 
     @classmethod
@@ -51,15 +52,13 @@ class PhotographRecord:
         """Return the record of a line, without unknown entries; what is not a record raises errors of Python."""
         known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
-        record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
+        record = cls(**{**known, "exposure": number_of(entry.get("exposure", 0.0))})
         paths = [record.folder, record.lut, record.linear]
         texts = [*paths, record.photograph, record.place, record.error, record.plate.name]
         if not all(isinstance(text, str) for text in texts):
             raise TypeError("a name is not a text")
         if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
             raise ValueError("a path leads elsewhere")  # files there might be replaced
-        if (primaries := record.plate.primaries) and not np.isfinite(np.linalg.inv(primaries.to_xyz())).all():
-            raise ValueError("these are not primaries")
         return record
 
     @property
@@ -70,16 +69,21 @@ class PhotographRecord:
         return PlatePrimaries(Primaries.from_dict(self.primaries), self.primaries_source)
 
     @property
+    def line(self) -> str:
+        """The result in one line of words, or why there is none."""
+        return self.error or self.summary + "; already there and left alone" * self.left_alone
+
+    @property
     def stem(self) -> str:
         """The name of its files, without folder and suffix; empty if there are none."""
         return PurePosixPath(self.lut or self.linear).stem
 
 
+@dataclass(frozen=True)
 class RecordFile:
     """A file of records, which need not exist yet; its folder must before a record is appended."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    path: Path
 
     def read(self) -> dict[str, PhotographRecord]:
         """Return each photograph's last record by its place, without a line cut short; PlateError for another file."""

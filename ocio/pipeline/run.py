@@ -1,6 +1,5 @@
 """Do the tasks of a batch: in processes, recorded as they end, not stopped by a bad file."""
 
-import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, as_completed
@@ -10,10 +9,10 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Progress, cores, show_progress
 
-from ..errors import PlateError, error_of_file
+from ..errors import PlateError
 from ..output_files import output_folder
 from .batch import Batch, Task, plan_tasks
-from .photographs import unreadable_reason
+from .photographs import content_digest, unreadable_reason
 from .records import PhotographRecord
 from .workers import worker_pool
 
@@ -58,16 +57,24 @@ def run_batch(
     records = batch.records.read()
     tasks = plan_tasks(batch, photographs, records)
     with output_folder(batch.out):
-        records = {} if batch.plates.overwrite else records
-        todo = [task for task in tasks if not task.is_done(records.get(task.place))]
-        done = len(tasks) - len(todo)
-        show_progress(progress, done, len(tasks))
+        known = [] if batch.plates.overwrite else [_known(task, records.get(task.place)) for task in tasks]
+        ended = {record.place: record for record in known if record}
+        todo = [task for task in tasks if task.place not in ended]
+        show_progress(progress, len(ended), len(tasks))
         for record in _ended(todo, workers or cores(), scheduler):
             batch.records.append(record)
-            records[record.place] = record
-            done += 1
-            show_progress(progress, done, len(tasks))
-    return batch.finished([records[task.place] for task in tasks])
+            ended[record.place] = record
+            show_progress(progress, len(ended), len(tasks))
+    return batch.finished([ended[task.place] for task in tasks])
+
+
+def _known(task: Task, record: PhotographRecord | None) -> PhotographRecord | None:
+    """Return the record of a photograph that is done, or has changed since; None if there is work."""
+    if record and task.is_done(record):
+        return replace(record, left_alone=True)
+    if record and task.is_outdated(record):  # its record stays, so that the next run says the same
+        return task.failure(PlateError("photograph_changed", path=task.photo))
+    return None
 
 
 def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
@@ -94,16 +101,16 @@ def _recorded(task: Task) -> PhotographRecord:
             raise PlateError("unreadable", path=task.photo, reason=reason)
         return _done_once(task)
     except BaseException as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
-        error = str(error_of_file(problem, task.photo))
-        return PhotographRecord(photograph=str(task.photo), place=task.place, options=task.options, error=error)
+        return task.failure(problem)
 
 
 def _done_once(task: Task) -> PhotographRecord:
     """Do a task; if another run has just written its files, return the record that it is about to append."""
     try:
-        return _record_of_existing(task) or task.batch.done(task)
+        content = content_digest(task.photo)
+        return _record_of_existing(task) or replace(task.batch.done(task), sha256=content)
     except CRFNetError:
-        for _ in range(RECORD_TRIALS if _existing(task) else 0):
+        for _ in range(RECORD_TRIALS if task.existing else 0):
             record = task.batch.records.read().get(task.place)
             if record and task.is_done(record):
                 return record
@@ -116,7 +123,7 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
 
     Raise PlateError if they belong to another photograph or program.
     """
-    there = [] if task.batch.plates.overwrite else _existing(task)
+    there = [] if task.batch.plates.overwrite else task.existing
     if not there:
         return None
     records = task.batch.records.read()
@@ -128,8 +135,3 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
     if is_owned or (record is None and len(there) < len(task.targets)):
         raise PlateError("file_exists", path=there[0])
     return None
-
-
-def _existing(task: Task) -> list[Path]:
-    """Return the files of a task that are there."""
-    return [path for path in task.targets if os.path.lexists(path)]

@@ -39,6 +39,9 @@ STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 #: NumPy's types of the two depths.
 SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 
+#: Our attribute of the form in which a file was written: see `written_form`.
+FORM = "crfnet:form"
+
 #: An attribute in a header up to its value: name, type and the size of the value.
 ATTRIBUTE = re.compile(rb"[^\0]+\0[^\0]+\0(.{4})", re.DOTALL)
 
@@ -65,12 +68,18 @@ def linear_header(
         found = next((value for other in others if (value := header.getattribute(other))), None)
         if found is not None:
             standard[name] = float(found) if name in STANDARD_NUMBERS else str(found)
-    for name, value in {**standard, **attributes}.items():
+    for name, value in {**standard, **attributes, FORM: written_form(header)}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
         else:  # OpenImageIO takes nothing that is not Unicode
             header.attribute(name, value.encode(errors="replace").decode() if isinstance(value, str) else value)
     return header
+
+
+def written_form(header: Any) -> str:
+    """Return the size, the channels and the coding of a file; a comp that is written over it may keep attributes."""
+    channels = " ".join(header.channelnames)
+    return f"{header.width} x {header.height} {channels} {header.format} {header['compression']}"
 
 
 def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:

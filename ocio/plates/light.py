@@ -19,7 +19,7 @@ from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from ..errors import LutError, PlateError
 from ..luts.rgb_lut import AnyLut, lut_identity
 from ..options import PlateOptions
-from .exr import is_whole
+from .exr import FORM, is_whole, written_form
 from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
 
 #: Our attributes of OpenEXR files: the plate (see `identities`), the LUT's provenance, the LUT itself, stops, primaries
@@ -84,12 +84,18 @@ def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS)
 
 def check_finished(plates: Iterable[tuple[Path, str]], light: PlateLight, depth: str) -> None:
     """Raise a PlateError unless each file is the whole linear frame, in this light, of its plate: see `identities`."""
+    outdated = []
     for path, plate in plates:
         written = _attributes(path)
         if EXPOSURE not in written:
             raise PlateError("finished_foreign", path=path)
-        if difference := _difference(written, plate, light, depth):
+        if written.get(PLATE) != plate:
+            outdated.append(path)
+        elif difference := _difference(written, light, depth):
             raise PlateError("finished_differs", path=path, difference=difference)
+    if outdated:
+        more = f" (and {len(outdated) - 1} more like it)" if outdated[1:] else ""
+        raise PlateError("finished_outdated", path=outdated[0], more=more)
 
 
 def is_finished(path: Path) -> bool:
@@ -97,10 +103,8 @@ def is_finished(path: Path) -> bool:
     return EXPOSURE in _attributes(path)
 
 
-def _difference(written: dict[str, Any], plate: str, light: PlateLight, depth: str) -> str:
-    """Return in words how a finished frame differs; empty if it does not."""
-    if written.get(PLATE) != plate:
-        return "the light of another plate"
+def _difference(written: dict[str, Any], light: PlateLight, depth: str) -> str:
+    """Return in words how the settings of a finished frame differ; empty if they do not."""
     if written[_DEPTH] != depth:
         return f"{written[_DEPTH]} samples, not {depth}"
     if abs(written[EXPOSURE] - light.stops) > SAME_EXPOSURE:
@@ -112,7 +116,10 @@ def _difference(written: dict[str, Any], plate: str, light: PlateLight, depth: s
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of an OpenEXR header by name, with its sample type; nothing of a file that is not whole."""
+    """Return the attributes of an OpenEXR header by name, with its sample type.
+
+    Nothing is returned of a file that is not whole, or that another program wrote in another form with our attributes.
+    """
     source = oiio.ImageInput.open(str(path)) if path.is_file() else None
     if source is None:
         oiio_message()
@@ -120,4 +127,5 @@ def _attributes(path: Path) -> dict[str, Any]:
     with closing(source):
         header = source.spec()
         attributes = {attribute.name: attribute.value for attribute in header.extra_attribs}
-    return {**attributes, _DEPTH: str(header.format)} if is_whole(path, header) else {}
+    is_ours = attributes.get(FORM) == written_form(header) and is_whole(path, header)
+    return {**attributes, _DEPTH: str(header.format)} if is_ours else {}

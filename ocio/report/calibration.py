@@ -1,6 +1,5 @@
 """A measured response in words, as JSON, and as the provenance in LUT files."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -89,10 +88,10 @@ def calibration_document(
         "size": [metadata.width, metadata.height],
         "shape_uncertainty_stops": rounded(uncertainty.shape_stops),
         "scale_uncertainty_stops": rounded(uncertainty.scale_stops),
-        "uncertainty_parts": {"shape": _parts(uncertainty.shape), "scale": _parts(uncertainty.scale)},
+        "uncertainty_parts": {"shape": rounded(uncertainty.shape), "scale": rounded(uncertainty.scale)},
         "residual_codes": rounded(calibration.residual),
         "warnings": [str(warning) for warning in calibration.warnings],
-        "comparison": None if comparison is None else _parts(vars(comparison)),
+        "comparison": None if comparison is None else rounded(vars(comparison)),
         "weights": rounded(calibration.weights),
         "response": {"brightness": plain_values(calibration.curve.brightness)},
         "color_space": files.color_space,
@@ -150,11 +149,6 @@ def _pair_document(calibration: PairCalibration) -> dict[str, Any]:
         "local_exponent": rounded(calibration.local),
         "corner_stops": rounded(calibration.corner),
     }
-
-
-def _parts(values: Mapping[str, float]) -> dict[str, Any]:
-    """Return numbers by name, rounded."""
-    return {name: rounded(value) for name, value in values.items()}
 
 
 def _source_words(calibration: Measured) -> str:

@@ -1,12 +1,13 @@
 """Estimates, plates and LUTs as documents: mappings ready for JSON."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crfnet_core.colorimetry import CORNERS
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import Camera
 
@@ -77,12 +78,11 @@ def camera_summary(camera: Camera) -> dict[str, Any]:
 def _light_document(light: PlateLight) -> dict[str, Any]:
     """Return the primaries, the exposure and the space of linear plates, ready for JSON."""
     primaries, gray = light.plate.primaries, linear_gray(light.lut)
-    corners = ("red", "green", "blue", "white")
     return {
         "primaries": {
             "name": light.plate.name,
             "source": light.plate.source,
-            **({corner: rounded(getattr(primaries, corner)) for corner in corners} if primaries else {}),
+            **({corner: rounded(getattr(primaries, corner)) for corner in CORNERS} if primaries else {}),
         },
         "exposure": {
             "stops": rounded(light.stops),
@@ -106,6 +106,8 @@ def file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
     }
 
 
-def rounded(values: ArrayLike) -> Any:
-    """Return a number, or nested lists of numbers, rounded to `DECIMALS` decimals."""
+def rounded(values: ArrayLike | Mapping[str, ArrayLike]) -> Any:
+    """Return a number, nested lists of numbers, or numbers by name, rounded to `DECIMALS` decimals."""
+    if isinstance(values, Mapping):
+        return {name: rounded(value) for name, value in values.items()}
     return np.round(np.asarray(values, dtype=np.float64), DECIMALS).tolist()

@@ -94,7 +94,7 @@ def _metadata_words(estimate: ResponseEstimate) -> str:
         return "no metadata used"
     differing = sum(words != first for words in others)
     more = f" (the first of {1 + len(others)} photographs; in {differing} it differs)" if differing else ""
-    if estimate.origins[0].is_told:
+    if estimate.origins[0].has_stated_device:
         who = "you and the file say" if len(estimate.origins[0].words) > 1 else "you say"
         return f"{who}: {first}{more}"
     return f"metadata: {first}{more}"

@@ -6,6 +6,7 @@ It needs matplotlib, which is an optional dependency.
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,6 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
-from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
@@ -58,11 +58,13 @@ STYLE: dict[Any, Any] = {
 
 
 def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1) -> None:
-    """Write the picture of an estimate as PNG; the same input gives the same bytes.
+    """Write the picture of an estimate as PNG; of a stored camera's response, without windows and model.
 
-    `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. Raise
-    PlateError if the file is there already or cannot be written.
+    `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. The
+    same input gives the same bytes. Raise PlateError if the file is there already or cannot be written.
     """
+    if estimate.camera:
+        estimate = replace(estimate, model="", windows=())
     with sheet_figure(path) as figure:
         _draw_heading(figure, estimate)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
@@ -136,20 +138,13 @@ def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:
 
 def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
     """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
-    _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed")
-    for window in estimate.windows:
-        if window.photo == 0:
-            axes.add_patch(_outline(window.window, is_kept=window.kept, width=1.8, color="#000000"))
-            axes.add_patch(_outline(window.window, is_kept=window.kept, width=0.9, color="#ffffff"))
-
-
-def _outline(window: Window, *, is_kept: bool, width: float, color: str) -> Rectangle:
-    """Return the outline of a window, in pixels of the photograph."""
-    style = "solid" if is_kept else (0, (2, 2))
-    corner = (window.x, window.y)
-    return Rectangle(
-        corner, window.extent, window.extent, fill=False, linewidth=width, linestyle=style, edgecolor=color
-    )
+    _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed" if estimate.windows else "The photograph")
+    for each in estimate.windows:
+        if each.photo == 0:
+            place = (each.window.x, each.window.y), each.window.extent, each.window.extent
+            style: Any = "solid" if each.kept else (0, (2, 2))
+            for width, color in ((1.8, "#000000"), (0.9, "#ffffff")):
+                axes.add_patch(Rectangle(*place, fill=False, linewidth=width, linestyle=style, edgecolor=color))
 
 
 def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:

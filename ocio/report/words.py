@@ -67,7 +67,7 @@ def result_line(estimate: ResponseEstimate, *, name: str) -> str:
     return f"{name}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
 
 
-def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty and the windows") -> list[str]:
+def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty and the plate") -> list[str]:
     """Return what was written, one line for each kind of file; names are relative to the folder."""
     rows = [
         (files.luts, "inverse response as a LUT"),

@@ -145,7 +145,7 @@ def test_words_of_a_camera():
 def test_a_stated_device_takes_the_place_of_the_files():
     before = origin(**OWN_CAMERA, software="GIMP 2.8")
     stated = with_stated_device(before, Device.PHONE)
-    assert (stated.device, stated.is_told) == (Device.PHONE, True)
+    assert (stated.device, stated.has_stated_device) == (Device.PHONE, True)
     assert (stated.camera, stated.editor) == (before.camera, before.editor)
     assert stated.words == ("taken with a phone", *before.words[1:])
     assert FileOrigin.from_dict(asdict(stated)) == stated
@@ -166,7 +166,7 @@ def test_a_copy_of_what_is_known_is_not_refused():
 @pytest.mark.parametrize("use_metadata", [True, False])
 def test_a_stated_device_counts_in_the_estimate(estimate, plate, use_metadata):
     stated, other = estimate(plate, device=Device.PHONE, use_metadata=use_metadata), estimate(plate)
-    assert (stated.origins[0].device, stated.origins[0].is_told) == (Device.PHONE, True)
+    assert (stated.origins[0].device, stated.origins[0].has_stated_device) == (Device.PHONE, True)
     assert (stated.origins[0].picture_shape == "16:9") is use_metadata
     assert stated.families[Family.PHONE] > 1.2 * other.families[Family.PHONE]
     assert stated.families[Family.CAMERA] < 0.2 * other.families[Family.CAMERA]

@@ -142,10 +142,11 @@ def test_code_values_are_refused(codes):
         ResponseCurve.gamma().inverse(codes)
 
 
-@pytest.mark.parametrize("argument", [None, "0.5", [1j]])
-def test_anything_but_numbers_is_refused(argument):
+@pytest.mark.parametrize("argument", [None, "0.5", [1j], [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)])
+@pytest.mark.parametrize("function", ["forward", "inverse"])
+def test_anything_but_numbers_is_refused(argument, function):
     with refused(CurveError, "not_numbers"):
-        ResponseCurve.gamma().forward(argument)
+        getattr(ResponseCurve.gamma(), function)(argument)
 
 
 def test_the_irradiances_are_uniform_and_cannot_be_changed():

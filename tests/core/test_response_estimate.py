@@ -103,6 +103,7 @@ def test_what_a_later_version_adds_is_left_out(estimate):
         ({"verdict": "splendid"}, "damaged_estimate"),
         ({"families": {"daguerreotype": 1}}, "damaged_estimate"),
         ({"weights": [10**400] * 11}, "damaged_estimate"),
+        ({"uncertainty": True}, "damaged_estimate"),
         ({"windows": 3}, "damaged_estimate"),
         ({"families": []}, "damaged_estimate"),
         ({"estimates": []}, "list_of_estimates"),

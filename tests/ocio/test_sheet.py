@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.result import CameraAnswer
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.posterior import Family, Verdict
@@ -51,6 +52,13 @@ def test_the_windows_lie_where_they_were_whatever_the_preview(photo, estimate, t
     sheet.draw_sheet(tmp_path / "half.png", photo.pixels[::2, ::2], estimate, stride=2)
     difference = np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png"))
     assert difference.mean() < 3
+
+
+def test_a_stored_camera_s_response_shows_neither_model_nor_windows(photo, estimate, tmp_path):
+    stored = dataclasses.replace(estimate, camera=CameraAnswer("A7", "20 exposures"))
+    for name, each in {"a.png": stored, "b.png": dataclasses.replace(stored, windows=(), model="")}.items():
+        sheet.draw_sheet(tmp_path / name, photo.pixels, each)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
 @pytest.mark.parametrize(

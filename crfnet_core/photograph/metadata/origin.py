@@ -76,12 +76,12 @@ class FileOrigin:
     words: tuple[str, ...]  # the same in plain words, one part of a sentence each
     renderer: str = ""  # the program that rendered the picture, so that no camera took it
     is_developed: bool = False  # by a program, from a raw file: XMP names the file, or the editor is such a program
-    is_told: bool = False  # whether a person has stated the device: see `with_stated_device`
+    has_stated_device: bool = False  # whether a person has stated the device: see `with_stated_device`
 
     @property
     def names_device(self) -> bool:
         """Whether the file or the user states what took the picture."""
-        return bool(self.camera) or self.is_told
+        return bool(self.camera) or self.has_stated_device
 
     @property
     def is_sent_copy(self) -> bool:
@@ -133,7 +133,7 @@ def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
         raise PhotoError("not_a_device", device=repr(device), names=", ".join(kind.name for kind in Device))
     device = Device(device)
     words = (f"taken with {_DEVICES.get(device, 'a camera')}", *origin.words[1:])
-    return replace(origin, device=device, is_told=True, words=words)
+    return replace(origin, device=device, has_stated_device=True, words=words)
 
 
 def picture_shape(width: int, height: int) -> str:

@@ -56,8 +56,8 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
             batch, photographs, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
         )
     document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
-    lines = [record.error or record.summary for record in records]
-    more = ["", f"Written to {batch.out}. All results, one JSON line each: {batch.records.path}"]
+    lines = [record.line for record in records]
+    more = ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
     print_result(document, [*lines, *more], as_json=arguments.json)
     if failed := [record for record in records if record.error]:
         raise PlateError("photographs_failed", failed=len(failed), count=len(records), problem=failed[0].error)

@@ -80,11 +80,10 @@ def lost_lines(plan: OutputPlan) -> list[str]:
     """Return a warning of these plates, with the command that brings them back."""
     if not (names := plan.lost_color_spaces):
         return []
-    which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
-    config = plan.files.config
+    which, config = f'"{names[0]}"' + f" and {len(names) - 1} more" * bool(names[1:]), plan.files.config
+    remedy = f"crfnet config add --base {shlex.quote(str(config))} --out FOLDER ESTIMATE, the JSON of the other"
     return [
-        f"Warning: {config.name} was replaced and no longer has {which}; a config with both is written by"
-        f" crfnet config add --base {shlex.quote(str(config))} --out FOLDER ESTIMATE, the JSON of the other."
+        f"Warning: {config.name} was replaced and no longer has {which}; a config with both is written by {remedy}."
     ]
 
 

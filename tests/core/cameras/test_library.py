@@ -15,6 +15,7 @@ from crfnet_core.library import (
 from crfnet_core.library.documents import read_camera
 from crfnet_core.posterior import Verdict
 from tests.helpers.cameras import camera
+from tests.helpers.refusals import refused
 
 
 @pytest.fixture
@@ -80,6 +81,7 @@ CHANGES = (
     {"brightness": [0, 1, 0.5]},
     {"shape_stops": -1},
     {"scale_stops": 1e9},
+    {"scale_stops": True},
     {"iso": [0]},
     {"iso": 5},
     {"warnings": 5},
@@ -165,7 +167,8 @@ def test_the_user_s_own_come_before_those_that_come_with_the_project(own):
     assert find_camera("canon eos 20d") == CameraLibrary.shipped().get("Canon EOS 20D")
     own.save(camera("Canon EOS 20D"))
     assert find_camera("canon eos 20d") == camera("Canon EOS 20D")
-    assert code_of(find_camera, "nobody") == "no_camera"
+    with refused(CameraError, "no_camera", folders=f"{own.folder} or {CameraLibrary.shipped().folder}"):
+        find_camera("nobody")
 
 
 def test_cameras_are_listed_to_choose_from(own):

@@ -49,7 +49,7 @@ REFUSED = {
     "bad_prior_families": (PHONE | {"shares": [0.5]}, PHONE | {"shares": {"telephone": 1}}),
     "bad_prior_values": (
         *(PHONE | {"shares": shares} for shares in ({"phone": -0.1}, {"phone": "1"}, {"phone": 0, "log": 0})),
-        *(PHONE | {"evidence": 1.5}, PHONE | {"plain": -0.1}),
+        *(PHONE | {"evidence": 1.5}, PHONE | {"evidence": True}, PHONE | {"plain": -0.1}),
     ),
     "bad_lookalikes": (PHONE | {"lookalikes": 1},),
 }

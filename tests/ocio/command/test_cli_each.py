@@ -142,6 +142,7 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
     [
         {"exposure": 10**400},
         {"exposure": "much"},
+        {"exposure": True},
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
         {"primaries": {"name": "mine"} | {key: [0.3, 0.3] for key in ("red", "green", "blue", "white")}},
         *({name: 1} for name in ("photograph", "place")),
@@ -164,7 +165,7 @@ def test_a_lut_that_was_damaged_since_is_named_and_estimated_again(estimate, pho
     estimate(photographs, *QUICK)
     (tmp_path / "out" / "a.spi1d").write_text("no LUT")
     shutil.copy(photographs / "a.jpg", photographs / "c.jpg")
-    assert estimate(photographs, *QUICK).refusal
+    assert f"{tmp_path / 'out' / 'a.spi1d'}: is damaged; run the same again" in estimate(photographs, *QUICK).err
     config = tmp_path / "out" / "config.ocio"
     assert [f"name: CRF {stem}\n" in config.read_text() for stem in ("a", "b", "c")] == [False, True, True]
     assert estimate(photographs, *QUICK).code == 0

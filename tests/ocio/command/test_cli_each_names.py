@@ -50,8 +50,11 @@ def test_names_that_differ_in_case_or_in_the_form_of_an_accent_only_are_one():
 
 
 def test_a_photograph_that_is_given_twice_is_one(estimate, photographs, tmp_path, monkeypatch):
+    """Also in a later run, and by a link to its folder."""
+    (tmp_path / "link").symlink_to(photographs)
     monkeypatch.chdir(photographs)
-    assert estimate("a.jpg", photographs / "a.jpg", "day 2/../a.jpg", *QUICK).code == 0
+    assert estimate("a.jpg", photographs / "a.jpg", "day 2/../a.jpg", tmp_path / "link" / "a.jpg", *QUICK).code == 0
+    assert estimate(tmp_path / "link" / "a.jpg", *QUICK).code == 0
     assert [record["photograph"] for record in records_in(tmp_path / "out")] == ["a.jpg"]
 
 

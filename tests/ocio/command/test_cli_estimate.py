@@ -138,7 +138,7 @@ def test_the_user_may_state_the_device(estimate, plate, device, words):
     assert f"\nPrior: camera; you and the file say: taken with {words}, " in estimate(plate, "--taken-with", device).out
     document = json.loads(estimate(plate, "--taken-with", device, "--overwrite", "--json").out)
     (metadata,) = document["estimates"][0]["metadata"]
-    assert metadata["is_told"]
+    assert metadata["has_stated_device"]
     assert (metadata["device"] == "phone") == (device == "phone")
 
 

@@ -119,6 +119,30 @@ def test_so_is_a_camera_that_has_changed(crfnet, fixed_model, photographs, own_c
     assert done.refusal == "other_options"
 
 
+@pytest.mark.parametrize("command", ["estimate", "linearize"])
+def test_a_photograph_that_has_changed_fails_alone_until_its_files_are_deleted(
+    crfnet, fixed_model, photographs, look, tmp_path, command
+):
+    options = ("--no-sheet", "--no-linear", "--model", fixed_model)
+    options = options if command == "estimate" else ("--lut", look / "plate.spi1d")
+
+    def run():
+        return crfnet(command, photographs, "--each", "--workers", "1", "--out", tmp_path / "out", *options)
+
+    assert (run().code, run().out.count("left alone")) == (0, 3)
+    with (photographs / "b.JPG").open("ab") as photograph:
+        photograph.write(b"another grade")
+    before = tree(tmp_path / "out")
+    for _ in range(2):
+        done = run()
+        assert (done.refusal, done.out.count("left alone")) == ("photographs_failed", 2)
+        assert f"{photographs / 'b.JPG'}: has changed" in done.out
+        assert tree(tmp_path / "out") == before
+    for path in (tmp_path / "out").glob("b.*"):
+        path.unlink()
+    assert (run().code, run().out.count("left alone")) == (0, 3)
+
+
 def test_json(linearize, photographs, look, tmp_path):
     done = linearize(photographs, "--lut", look / "plate.spi1d", "--json")
     assert json.loads(done.out) == {"folder": str(tmp_path / "out"), "photographs": records_in(tmp_path / "out")}

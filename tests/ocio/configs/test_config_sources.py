@@ -87,7 +87,7 @@ class TestBlender:
     ("name", "code"),
     [
         ("nowhere", "config_unknown"),
-        ("ocio://nowhere", "config_not_built_in"),
+        ("ocio://nowhere", "config_unknown"),
         ("nowhere.ocio", "no_such_file"),
         ("a.ocioz", "config_archive"),
     ],

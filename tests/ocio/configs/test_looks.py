@@ -2,6 +2,7 @@
 
 import functools
 import json
+from dataclasses import asdict
 from unittest.mock import Mock
 
 import numpy as np
@@ -101,13 +102,19 @@ def test_a_document_does_not_lead_out_of_its_folder(tmp_path, root, name):
     assert refusal(tmp_path, root, "photographs", 0, "name", name) == "not_a_look"
 
 
-@pytest.mark.parametrize("point", [[1, 0], [0.3127, 0.329]])
-def test_primaries_that_make_no_matrix_are_refused(tmp_path, root, point):
-    corners = dict.fromkeys(("red", "green", "blue", "white"), point)
-    assert refusal(tmp_path, root, "primaries", {"name": "none", **corners}) == "not_a_look"
+@pytest.mark.parametrize(
+    "change",
+    [
+        *(dict.fromkeys(("red", "green", "blue", "white"), point) for point in ([1, 0], [0.3127, 0.329])),
+        *({"red": point} for point in ([True, True], [1e300, 1e-300], [0.64], ["0.64", "0.33"], 5)),
+        *({"white": point} for point in ([0.64, 1e-320], [0.3, -0.1], [0.3, 0])),
+    ],
+)
+def test_primaries_that_make_no_matrix_are_refused(tmp_path, root, change):
+    assert refusal(tmp_path, root, "primaries", asdict(REC709) | change) == "not_a_look"
 
 
-@pytest.mark.parametrize("stops", [2000, 1e308])
+@pytest.mark.parametrize("stops", [2000, 1e308, True])
 def test_an_exposure_beyond_single_precision_is_refused(tmp_path, root, stops):
     (tmp_path / "plate.spi1d").write_bytes((root / "docs" / "sample" / "plate.spi1d").read_bytes())
     assert refusal(tmp_path, root, "exposure", "stops", stops) == "not_a_look"

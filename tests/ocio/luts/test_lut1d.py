@@ -204,8 +204,9 @@ def test_code_values_are_refused(true_response, step):
     for codes in (np.array([[[0, 128, 255]]], np.uint8), np.uint16([0, 1]), [0, 2]):
         with refused(LutError, "lut_codes", largest=np.max(codes)):
             step(lut, codes)
-    with refused(LutError, "lut_of_no_numbers"):
-        step(lut, "0.5")
+    for others in ("0.5", [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)):
+        with refused(LutError, "not_numbers"):
+            step(lut, others)
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
 
 

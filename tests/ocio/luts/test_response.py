@@ -65,8 +65,13 @@ def test_linear_light_is_not_inverted(tmp_path):
     assert not read_response(tmp_path / "a.cube").was_forward
 
 
-def test_a_lut_of_code_values_is_refused(tmp_path):
-    """A plate would be black."""
-    write_lut(tmp_path / "a.spi1d", Lut1D(GRID**2.2, domain=(0, 255)))
-    with refused(LutError, "lut_of_codes", last=255):
-        read_response(tmp_path / "a.spi1d")
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize("codes", [(0, 255), (-255, 0), (-1, 0.05), (0, 0.5), (0.5, 1), (1.5, 2)])
+@pytest.mark.parametrize("forward", [False, True])
+def test_a_lut_of_other_codes_than_0_to_1_is_refused(tmp_path, suffix, codes, forward):
+    """Parts of a plate would be black or white."""
+    low, high = codes
+    lut = Lut1D(low + (high - low) * GRID ** (1 / 2.2)) if forward else Lut1D(GRID**2.2, domain=codes)
+    write_lut(tmp_path / f"a{suffix}", lut)
+    with refused(LutError, "lut_of_codes"):
+        read_response(tmp_path / f"a{suffix}")

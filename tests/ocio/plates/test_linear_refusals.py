@@ -49,6 +49,15 @@ def foreign_exr(path):
     write_image(path, SMALL[..., :3].astype(np.float32))
 
 
+def write_over(path, *, pixels=slice(None), names="RGB", compression="zips"):
+    """Write a comp with all metadata of a linear plate over it."""
+    samples = read_image(path)[pixels, :, : len(names)]
+    attributes = {each.name: each.value for each in oiio.ImageBuf(str(path)).spec().extra_attribs}
+    attributes = {name: value for name, value in attributes.items() if isinstance(value, str | float)}
+    attributes |= {"compression": compression}
+    write_image(path, samples.astype(np.float16), names=tuple(names), **attributes)
+
+
 @pytest.mark.parametrize(
     ("change", "code"),
     [
@@ -56,7 +65,10 @@ def foreign_exr(path):
         (lambda path: os.truncate(path, 0), "finished_foreign"),
         (lambda path: os.truncate(path, path.stat().st_size - 1), "finished_foreign"),
         (foreign_exr, "finished_foreign"),
-        (lambda path: linearize(path.parent / "a.0003.png", path, LUT, overwrite=True), "finished_differs"),
+        (lambda path: write_over(path, pixels=slice(8)), "finished_foreign"),
+        (lambda path: write_over(path, names="Y"), "finished_foreign"),
+        (lambda path: write_over(path, compression="none"), "finished_foreign"),
+        (lambda path: linearize(path.parent / "a.0003.png", path, LUT, overwrite=True), "finished_outdated"),
     ],
 )
 @pytest.mark.parametrize(("name", "target"), [("a.0002.png", "a.exr"), ("a.####.png", "a.0002.exr")])
