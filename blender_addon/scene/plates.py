@@ -194,12 +194,14 @@ def _obstacle_unsaved(datablock: Datablock) -> str:
     return ""
 
 
-def plate_of(datablock: Datablock) -> Plate:
+def plate_of(datablock: Datablock, *, is_only_read: bool = False) -> Plate:
     """Return the plate of an image or clip, with pixels that are only in memory: painted ones, a movie's frame.
 
-    Raise AddonError if no response can be estimated from it, or its file is not found.
+    Raise AddonError if no response can be estimated from it, or its file is not found; `is_only_read` if it may be
+    linked from another file.
     """
-    if problem := obstacle(datablock):
+    problem = obstacle(datablock)
+    if problem and not (is_only_read and problem == why_unchangeable(datablock)):
         raise AddonError(problem)
     if not has_own_file(datablock):
         name, content = file_name(datablock), content_of(datablock)
