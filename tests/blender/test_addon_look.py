@@ -7,7 +7,19 @@ from crfnet.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 
-from .helpers import IS_BLENDER_5, apply, bpy, curve_of, estimate, group_node, load, output, scene_tree
+from .helpers import (
+    IS_BLENDER_5,
+    apply,
+    bpy,
+    curve_of,
+    drawn_in,
+    estimate,
+    group_node,
+    labels,
+    load,
+    output,
+    scene_tree,
+)
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -134,6 +146,17 @@ def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
     plate_file.unlink()
     assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
     assert any(group.name.startswith("Camera Look plate") for group in bpy.data.node_groups)
+
+
+def test_the_panel_says_that_the_output_is_not_linear_and_can_mute_the_look(look, plate_file, in_editor):
+    image, node = look(plate_file)
+    drawn = drawn_in(image, in_editor)
+    assert "The output has the Camera Look: it is not linear." in " ".join(labels(drawn))
+    assert ("prop", node, "mute", "Mute Camera Look") in drawn
+    node.mute = True
+    assert "Camera Look:" not in " ".join(labels(drawn_in(image, in_editor)))
+    bpy.ops.crf.add_look(image=image.name)
+    assert not node.mute
 
 
 def test_it_says_why_it_cannot_be_added(image, in_editor):

@@ -5,7 +5,20 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import IS_BLENDER_5, bpy, curve_of, estimate, group_node, load, load_sequence, pixels_of, plates, show
+from .helpers import (
+    IS_BLENDER_5,
+    bpy,
+    curve_of,
+    drawn_in,
+    estimate,
+    group_node,
+    labels,
+    load,
+    load_sequence,
+    pixels_of,
+    plates,
+    show,
+)
 
 FRAMES = 12
 
@@ -92,6 +105,17 @@ def test_a_plate_holds_the_code_values_of_the_frame_shown(movie, codes, kind, nu
         assert np.abs(difference).max() <= most
         assert abs(difference.mean()) < 0.1
     assert [image for image in bpy.data.images if image not in images and kind == "clip"] == []
+
+
+def test_bake_is_gray_and_not_the_choice_for_a_movie(movie, addon, in_editor):
+    image = load(movie("rgb.mkv"))
+    estimate(image)
+    addon.apply_as = "BAKE"
+    assert image.camera_response_settings.apply == "NODES"
+    drawn = drawn_in(image, in_editor)
+    choices = [n for n, entry in enumerate(drawn) if entry[0] == "prop_enum"]
+    assert [drawn[n - 1] for n in choices] == [("set", "enabled", value) for value in (True, False, True)]
+    assert "Movies are not baked" in " ".join(labels(drawn))
 
 
 def test_a_movie_of_ten_bits_has_no_code_values(movie):

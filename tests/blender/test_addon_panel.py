@@ -7,7 +7,11 @@ from .helpers import Layout, apply, bpy, drawn_here, drawn_in, estimate, labels,
 pytestmark = pytest.mark.usefixtures("estimated")
 
 
-@pytest.mark.parametrize("mode", ["NODES", "BAKE", "EXPORT"])
+#: The ways to apply a response.
+MODES = ["NODES", "BAKE", "EXPORT"]
+
+
+@pytest.mark.parametrize("mode", MODES)
 def test_it_draws_every_mode(image, in_editor, mode):
     """Apply comes right behind the verdict, the curve and the ways to apply it; no word stands between."""
     image.camera_response_settings.apply = mode
@@ -15,7 +19,8 @@ def test_it_draws_every_mode(image, in_editor, mode):
     properties = [entry[2] for entry in drawn if entry[0] == "prop"]
     apply = drawn.index(("operator", "crf.apply_response", "Apply", "CHECKMARK"))
     curve = next(n for n, entry in enumerate(drawn) if entry[0] == "template_icon")
-    assert [entry[2] for entry in drawn[:apply] if entry[0] == "prop"] == ["apply"]
+    assert [entry[2:] for entry in drawn if entry[0] == "prop_enum"] == [("apply", mode) for mode in MODES]
+    assert not [entry for entry in drawn[:apply] if entry[0] == "prop"]
     assert not labels(drawn[curve:apply])
     assert ("compose" in properties) == (mode == "NODES")
     words = " ".join(labels(drawn))
@@ -77,6 +82,9 @@ def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
     assert shown(image, in_editor) == ("Apply Again", True, False)
     estimate(image)  # another response, which is not applied
     assert shown(image, in_editor) == ("Apply", False, False)
+    assert "Its nodes keep the earlier response until you apply this one." in " ".join(
+        labels(drawn_in(image, in_editor))
+    )
 
 
 def shown(image, in_editor):
@@ -130,9 +138,10 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert defaults.CONFIG_NAME == CONFIG_NAME
 
 
-def test_a_long_option_is_broken_behind_a_colon(addon):
+def test_a_long_option_is_broken_behind_a_colon(addon, in_editor):
     from blender_addon.ui.estimate_box import draw_text
 
     layout = Layout()
-    draw_text(layout, "use its filter scale=in_range=limited:out_range=full first", 32)
-    assert labels(layout.drawn) == ["use its filter", "scale=in_range=limited:", "out_range=full first"]
+    with in_editor("IMAGE_EDITOR"):
+        draw_text(layout, "use range=limited:out_range=full")
+    assert labels(layout.drawn) == ["use range=limited:", "out_range=full"]

@@ -61,7 +61,7 @@ def test_two_scenes_are_linearized_once_each_and_keep_exposures_of_their_own(ima
     assert (exposures(first), exposures(other)) == ([0], [1])
     assert APPLIED in words_on(image, in_editor)
     window.scene = first
-    assert CHANGED in words_on(image, in_editor)
+    assert "The nodes of this scene have exposure 0.00 until you apply." in words_on(image, in_editor)
 
 
 def test_the_look_of_another_scene_keeps_its_exposure(image):

@@ -68,6 +68,7 @@ def group_in(tree):
 def test_it_goes_between_the_texture_and_what_follows_and_gives_the_light_of_every_code(shader, image, codes):
     drawn = shader.show(image, response)
     assert ("crf.apply_response", "Apply Again") in operators(drawn)
+    assert "Look at the linear plate" not in words(drawn)  # no button shows it here
     node = group_in(shader.tree)
     assert node.inputs["Color"].links[0].from_node == shader.texture
     assert shader.glow.inputs["Color"].links[0].from_node == node
@@ -124,6 +125,13 @@ def test_a_working_space_that_was_changed_counts_when_the_plate_is_applied_again
         bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
     light = converted(loaded(running_config()), "ACEScg", "Linear Rec.709", light)
     assert np.abs(light - curve_of(image).inverse(codes / 255)).max() < 1e-5
+
+
+def test_a_bake_in_it_names_the_linear_plate(shader, image):
+    shader.show(image, response)
+    image.camera_response_settings.apply = "BAKE"
+    drawn = shader.show(image, lambda: apply(image, "BAKE"))
+    assert 'The linear plate is "plate_linear.exr": choose it in the node.' in words(drawn).replace(". exr", ".exr")
 
 
 def test_a_group_that_is_muted_or_missing_is_told_and_mended(shader, image):
