@@ -203,11 +203,8 @@ def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, setti
         row.prop(settings, "gray", slider=True)
         if context.space_data.type == "IMAGE_EDITOR":
             row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
-    column.prop(settings, "camera")
-    column.prop(settings, "prior")
-    column.prop(settings, "device")
-    column.prop(settings, "ignore_metadata")
-    column.prop(settings, "force")
+    for name in ("camera", "prior", "device", "ignore_metadata", "force"):
+        column.prop(settings, name)
 
 
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:

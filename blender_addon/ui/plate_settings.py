@@ -185,10 +185,8 @@ def exported_config(datablock: bpy.types.ID) -> str:
 
 def has_written(datablock: bpy.types.ID) -> bool:
     """Return whether a plate with an estimate has written files last, of the kind and to the folder of its settings."""
-    applied, settings = datablock[stored_estimate.KEY].get(APPLIED, {}), datablock.camera_response_settings
-    return settings.apply not in WITHOUT_FILES and all(
-        applied.get(name) == getattr(settings, name) for name in ("apply", "folder")
-    )
+    applied, present = datablock[stored_estimate.KEY].get(APPLIED, {}), _comparable(datablock.camera_response_settings)
+    return "folder" in present and all(applied.get(name) == present[name] for name in ("apply", "folder"))
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:

@@ -84,14 +84,10 @@ def test_it_undoes_it_in_another_working_space(look, plate_file, codes, tmp_path
     assert np.abs(saved[..., :3] - codes).max() <= 1
 
 
-def test_the_view_becomes_standard_and_a_saved_render_is_the_plate(look, plate_file, codes, tmp_path):
+def test_saved_through_standard_it_is_the_plate_and_its_code_values_are_through_raw(look, plate_file, codes, tmp_path):
     assert bpy.context.scene.view_settings.view_transform == "AgX"
-    look(plate_file, exposure=1)
-    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
-
-
-def test_code_values_saved_through_raw_are_the_plate(look, plate_file, codes, tmp_path):
     _, node = look(plate_file, exposure=1)
+    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
     scene_tree().links.new(node.outputs["Code Values"], output().inputs[0])
     bpy.context.scene.view_settings.view_transform = "Raw"
     assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
@@ -114,14 +110,20 @@ def test_light_beyond_the_camera_clips(look, composited, plate_file):
     assert 0 < green < 1
 
 
-def test_it_stands_before_the_output_once(look, plate_file):
+def test_it_stands_before_the_output_once_and_the_panel_says_so(look, plate_file, in_editor):
     image, node = look(plate_file)
+    drawn = drawn_in(image, in_editor)
+    assert "The output has the Camera Look: it is not linear." in " ".join(labels(drawn))
+    assert ("prop", node, "mute", "Mute Camera Look") in drawn
+    node.mute = True
+    assert "Camera Look:" not in " ".join(labels(drawn_in(image, in_editor)))
     ends = {link.to_node.type for link in node.outputs["Image"].links}
     assert ends == {"VIEWER", output().type}
     assert node.inputs["Image"].links[0].from_node == group_node()
     group_node().inputs["Exposure"].default_value = 0.75
     bpy.ops.crf.add_look(image=image.name)
     assert group_node("Camera Look") == node
+    assert not node.mute
     assert node.inputs["Exposure"].default_value == 0.75
     assert node.inputs["Image"].links[0].from_node == group_node()
 
@@ -146,17 +148,6 @@ def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
     plate_file.unlink()
     assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
     assert any(group.name.startswith("Camera Look plate") for group in bpy.data.node_groups)
-
-
-def test_the_panel_says_that_the_output_is_not_linear_and_can_mute_the_look(look, plate_file, in_editor):
-    image, node = look(plate_file)
-    drawn = drawn_in(image, in_editor)
-    assert "The output has the Camera Look: it is not linear." in " ".join(labels(drawn))
-    assert ("prop", node, "mute", "Mute Camera Look") in drawn
-    node.mute = True
-    assert "Camera Look:" not in " ".join(labels(drawn_in(image, in_editor)))
-    bpy.ops.crf.add_look(image=image.name)
-    assert not node.mute
 
 
 def test_it_says_why_it_cannot_be_added(image, in_editor):

@@ -7,7 +7,7 @@ from .helpers import apply, bpy, compositor_tree, drawn_in, groups, labels, plat
 pytestmark = pytest.mark.usefixtures("estimated")
 
 
-APPLIED, CHANGED = "Applied with these settings.", "Changed settings count once they are applied."
+APPLIED = "Applied with these settings."
 
 
 def words_on(image, in_editor):
