@@ -15,7 +15,7 @@ from .more.load_lut import CRF_OT_load_lut
 from .more.looks import CRF_OT_add_look, draw_view
 from .more.other_plates import CRF_OT_copy_response
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
-from .plate_settings import exported_config, has_written, is_applied, is_to_be_applied
+from .plate_settings import APPLIED, exported_config, has_written, is_applied, is_to_be_applied
 from .preferences import APPLY_MODES
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
@@ -127,7 +127,8 @@ def _waiting(scene: bpy.types.Scene, datablock: plates.Datablock) -> str:
     """Return in words how what was applied differs from what the panel shows; an empty text if nothing was."""
     nodes = links.groups_of(datablock, scene)
     if not is_to_be_applied(datablock):
-        return "Its nodes keep the earlier response until you apply this one." if nodes else ""
+        is_new = APPLIED not in datablock[stored_estimate.KEY]
+        return "Its nodes keep the earlier response until you apply this one." if nodes and is_new else ""
     if compositor.has_exposure(datablock, scene, stored_estimate.exposure(datablock)):
         return "Changed settings count once they are applied."
     exposures = {f"{node.inputs['Exposure'].default_value:.2f}" for node in nodes}
