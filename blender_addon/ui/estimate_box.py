@@ -114,10 +114,10 @@ def draw_text(layout: bpy.types.UILayout, *texts: str, icon: str = "NONE") -> No
     """Draw texts as paragraphs in lines that fit; an icon goes before each, and its other lines are indented."""
     width = max(20, int(_width() / _LETTER)) - (_ICON // _LETTER if icon != "NONE" else 0)
     for number, text in enumerate(filter(None, texts)):
+        if number:
+            layout.separator(factor=0.5)
         column = layout.column(align=True)
         column.scale_y = _LINE
-        if number:
-            column.separator(factor=0.5)
         for part_number, part in enumerate(_Wrapper(width).wrap(text)):
             column.label(text=part, icon="BLANK1" if part_number and icon != "NONE" else icon)
 
