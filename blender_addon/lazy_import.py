@@ -45,7 +45,11 @@ def missing() -> str:
     name = str(__package__).rpartition(".")[2]
     modules = [addon.module for addon in bpy.context.preferences.addons]
     copies = [module for module in modules if module.rpartition(".")[2] == name]
-    return f"the add-on is installed twice: remove {' or '.join(copies)}" if len(copies) > 1 else _missing_library()
+    if len(copies) < 2:
+        return _missing_library()
+    names = {f"bl_ext.{each.module}.{name}": each.name for each in bpy.context.preferences.extensions.repos}
+    places = " or ".join(names.get(module, module) for module in copies)
+    return f"The add-on is installed twice: in Preferences, Get Extensions, uninstall the copy of {places}"
 
 
 @cache
@@ -56,7 +60,7 @@ def _missing_library() -> str:
     """
     _expose_blenders_own()
     absent = [name for name in (*_IN_WHEELS, *_IN_BLENDER) if importlib.util.find_spec(name) is None]
-    return f"{absent[0]} is missing: {_remedy(absent[0])}" if absent else _of_another_build()
+    return f"The library {absent[0]} is missing: {_remedy(absent[0])}" if absent else _of_another_build()
 
 
 def _of_another_build() -> str:
@@ -70,7 +74,7 @@ def _of_another_build() -> str:
     expected, installed = wheel.split("-")[1], imported or importlib.metadata.version("crfnet")
     if "+" not in expected or installed == expected:
         return ""
-    return f"the add-on needs its estimator {expected}, but Blender has loaded {installed}: restart Blender"
+    return f"The add-on needs its estimator {expected}, but Blender has loaded {installed}: restart Blender"
 
 
 def _expose_blenders_own() -> None:

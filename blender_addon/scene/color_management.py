@@ -14,10 +14,10 @@ CONFIG_NAME = "config.ocio"
 #: Environment variables that name Blender's config; Blender 4.5 knows the first only.
 CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 
-#: The view transform that undoes the encoding of the display; and all, of common configs, that do not darken a plate,
-#: or are not made for pictures.
-STANDARD = "Standard"
-NOT_DARKER = (STANDARD, "Raw", "Un-tone-mapped", "False Color", "Filmic Log")
+#: The view transforms that undo the encoding of the display, in Blender's config and in those of ACES; and all, of
+#: common configs, that do not darken a plate, or are not made for pictures.
+STANDARD = ("Standard", "Un-tone-mapped")
+NOT_DARKER = (*STANDARD, "Raw", "False Color", "Filmic Log")
 
 
 def color_spaces() -> list[str]:
@@ -53,16 +53,16 @@ def darker_view(scene: bpy.types.Scene) -> str:
     return "" if view in NOT_DARKER else view
 
 
-def has_standard_view(scene: bpy.types.Scene) -> bool:
-    """Return whether the config has the view transform Standard for the scene's display."""
-    return bool(bpy.types.UILayout.enum_item_name(scene.view_settings, "view_transform", STANDARD))
+def standard_view(scene: bpy.types.Scene) -> str:
+    """Return which of `STANDARD` the config has for the scene's display; an empty text for none."""
+    view, item_name = scene.view_settings, bpy.types.UILayout.enum_item_name
+    return next((name for name in STANDARD if item_name(view, "view_transform", name)), "")
 
 
-def set_standard_view(scene: bpy.types.Scene) -> bool:
-    """Show a scene by the view transform Standard and nothing else; return False if the config does not have it."""
-    if not has_standard_view(scene):
-        return False
-    view = scene.view_settings
-    view.view_transform, view.look, view.exposure, view.gamma = STANDARD, "None", 0, 1
-    view.use_curve_mapping = view.use_white_balance = False
-    return True
+def set_standard_view(scene: bpy.types.Scene) -> str:
+    """Show a scene by its `standard_view` and nothing else; return this view."""
+    view, name = scene.view_settings, standard_view(scene)
+    if name:
+        view.view_transform, view.look, view.exposure, view.gamma = name, "None", 0, 1
+        view.use_curve_mapping = view.use_white_balance = False
+    return name

@@ -88,8 +88,7 @@ def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
 
 def _plate_among(nodes: bpy.types.Nodes) -> Datablock | None:
     """Return the plate of the active node, for a plate's node group of the node at its first input; or the only one."""
-    node = nodes.active
-    properties = (getattr(node, "node_tree", None) or {}).keys()
+    node, properties = nodes.active, (getattr(nodes.active, "node_tree", None) or {}).keys()
     if not any(name.startswith("camera_response") for name in properties):
         all_plates = {datablock_of_node(each) for each in nodes} - {None}
         return datablock_of_node(node) or (all_plates.pop() if len(all_plates) == 1 else None)
@@ -194,12 +193,13 @@ def _obstacle_unsaved(datablock: Datablock) -> str:
     return ""
 
 
-def plate_of(datablock: Datablock) -> Plate:
+def plate_of(datablock: Datablock, *, is_only_read: bool = False) -> Plate:
     """Return the plate of an image or clip, with pixels that are only in memory: painted ones, a movie's frame.
 
-    Raise AddonError if no response can be estimated from it, or its file is not found.
+    Raise AddonError if no response can be estimated from it, or its file is not found. One that `is_only_read` may be
+    linked from another file.
     """
-    if problem := obstacle(datablock):
+    if (problem := obstacle(datablock)) and not (is_only_read and problem == why_unchangeable(datablock)):
         raise AddonError(problem)
     if not has_own_file(datablock):
         name, content = file_name(datablock), content_of(datablock)

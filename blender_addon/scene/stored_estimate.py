@@ -90,12 +90,6 @@ def panel_paragraphs(datablock: Datablock) -> tuple[list[str], list[str], list[s
     return advice, details, warnings
 
 
-def recognized_as(datablock: Datablock) -> str:
-    """Return "log footage" or "limited range" if the photographs are recognized as such; else an empty text."""
-    recognition = json.loads(datablock[KEY]["recognition"])
-    return recognition["kind"] if recognition else ""
-
-
 def warning_codes(datablock: Datablock) -> list[str]:
     """Return the codes of the warnings of the stored estimate."""
     return [code for code, _ in json.loads(datablock[KEY]["notices"])]

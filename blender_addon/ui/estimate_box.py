@@ -23,12 +23,13 @@ VERDICTS = {
     "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
     stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
     "mean": ("Mean of cameras", "QUESTION", "Usable only as that: the picture shows too little of its response."),
-    "loaded": ("Loaded", "FILE", ""),
+    "loaded": ("From a LUT", "FILE", ""),
     "copied": ("Copied", "DUPLICATE", "It is right only if the same camera took both, with the same settings."),
 }
 
 #: The axes and colors of the picture of the curve.
-CAPTION = "Code value (a line every 64) by stops below white (every 2). Blue: 90 % band. Dashed: gamma 2.2."
+CAPTION = "Code value (a line every 64) by stops below white (every 2). Dashed: gamma 2.2."
+BAND = " Blue: 90 % band."
 
 #: The mean width of a letter, the borders of the panel and a box, and the width of an icon: pixels at a scale of 1.
 _LETTER, _BORDER, _ICON = 6, 60, 20
@@ -48,7 +49,6 @@ class _Wrapper(textwrap.TextWrapper):
 
 def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw the verdict on the stored estimate of a plate, and its curve, in one box."""
-    letters = letters_of(context)
     word, icon, meaning = _verdict_words(datablock)
     advice = stored_estimate.panel_paragraphs(datablock)[0]
     is_doubted = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
@@ -57,44 +57,45 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     row = column.row()
     row.alert = is_doubted
     row.label(text=word, icon=icon)
-    for text in (*advice, meaning, stored_estimate.origin(datablock)):
-        draw_text(column, text, letters)
+    has_switch = context.space_data.type == "IMAGE_EDITOR"
+    draw_text(column, *advice, meaning if has_switch else "", stored_estimate.origin(datablock))
     if ffmpeg_filter := re.search(r"scale=[\w:=]+", " ".join(advice)):
         button = column.operator("wm.context_set_string", text="Copy the Filter", icon="COPYDOWN")
         button.data_path, button.value = "window_manager.clipboard", ffmpeg_filter[0]
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops) and not is_doubted:
-        draw_text(column, f"Expected error {stops:.2f} stop", letters)
+        draw_text(column, f"Expected error {stops:.2f} stop")
     box.template_icon(icon_value=curve_icon(datablock), scale=_SMALL)
-    if context.space_data.type == "IMAGE_EDITOR":
+    if has_switch:
         is_after = plates.compared_plate(context.space_data.image) is not None
         row = box.row(align=True)
         row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
         row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
 
 
-def draw_notices(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+def draw_notices(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
     """Draw the warnings of the stored estimate of a plate, and stored cameras."""
-    letters = letters_of(context)
-    draw_paragraphs(layout, stored_estimate.panel_paragraphs(datablock)[2], letters, icon="ERROR")
+    draw_text(layout, *stored_estimate.panel_paragraphs(datablock)[2], icon="ERROR")
     if name := stored_estimate.camera(datablock):
-        draw_text(layout, f"This is the response of the stored camera {name}.", letters, icon="CAMERA_DATA")
+        draw_text(layout, f"This is the response of the stored camera {name}.", icon="CAMERA_DATA")
         layout.operator("crf.estimate_response", text="Estimate from the Plate").camera = ""
-    for name, words in stored_estimate.offers(datablock):
-        draw_text(layout, words, letters, icon="CAMERA_DATA")
+    if offers := stored_estimate.offers(datablock):  # the most exact first
+        name, words = offers[0]
+        basis = re.sub(r" \([^()]*\)", "", words.removeprefix(f"{name}: "))
+        others = " Others: Advanced > Camera." if offers[1:] else ""
+        draw_text(layout, f"A response of this camera was {basis}.{others}", icon="CAMERA_DATA")
         layout.operator("crf.estimate_response", text=f"Use {name}").camera = name
 
 
-def draw_details(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+def draw_details(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
     """Draw the curve of the stored estimate as large as fits, and all sentences about it; closed at first."""
     header, body = layout.panel("CRF_details", default_closed=True)
     header.label(text="Details")
     if body is None:
         return
-    letters, side = letters_of(context), _width(context) / _ICON
-    body.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_LEAST, side)))
-    draw_text(body, CAPTION, letters)
-    draw_paragraphs(body, stored_estimate.panel_paragraphs(datablock)[1], letters)
+    body.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_LEAST, _width() / _ICON)))
+    is_band_seen = stored_estimate.has_verdict(datablock) and not stored_estimate.camera(datablock)
+    draw_text(body, CAPTION + BAND * is_band_seen, *stored_estimate.panel_paragraphs(datablock)[1])
 
 
 def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
@@ -106,38 +107,25 @@ def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
         return VERDICTS["copied"]
     if says_too_little(verdict, stored_estimate.warning_codes(datablock)):
         return VERDICTS["mean"]
-    word, icon, meaning = VERDICTS[verdict]
-    kind = stored_estimate.recognized_as(datablock)
-    return f"{word}: {kind}" if kind else word, icon, meaning
+    return VERDICTS[verdict]
 
 
-def draw_paragraphs(layout: bpy.types.UILayout, lines: list[str], letters: int, *, icon: str = "NONE") -> None:
-    """Draw lines as paragraphs in one column, each with an icon; nothing if there are none."""
-    column = layout.column(align=True)
-    for number, line in enumerate(lines):
+def draw_text(layout: bpy.types.UILayout, *texts: str, icon: str = "NONE") -> None:
+    """Draw texts as paragraphs in lines that fit; an icon goes before each, and its other lines are indented."""
+    width = max(20, int(_width() / _LETTER)) - (_ICON // _LETTER if icon != "NONE" else 0)
+    for number, text in enumerate(filter(None, texts)):
         if number:
-            column.separator(factor=0.5)
-        draw_text(column, line, letters, icon=icon)
+            layout.separator(factor=0.5)
+        column = layout.column(align=True)
+        column.scale_y = _LINE
+        for part_number, part in enumerate(_Wrapper(width).wrap(text)):
+            column.label(text=part, icon="BLANK1" if part_number and icon != "NONE" else icon)
 
 
-def draw_text(layout: bpy.types.UILayout, text: str, letters: int, *, icon: str = "NONE") -> None:
-    """Draw a text in lines that fit; an icon goes before the first, and the others are indented by as much."""
-    column = layout.column(align=True)
-    column.scale_y = _LINE
-    width = letters - (_ICON // _LETTER if icon != "NONE" else 0)
-    for number, part in enumerate(_Wrapper(width).wrap(text)):
-        column.label(text=part, icon=icon if not number or icon == "NONE" else "BLANK1")
-
-
-def letters_of(context: bpy.types.Context) -> int:
-    """Return how many letters fit into a line of a box in the region; at least 20."""
-    return max(20, int(_width(context) / _LETTER))
-
-
-def _width(context: bpy.types.Context) -> float:
-    """Return the width inside a box in the region, in pixels at a scale of 1."""
-    scale = context.preferences.system.ui_scale or 1  # 0 without a screen
-    return context.region.width / scale - _BORDER
+def _width() -> float:
+    """Return the width inside a box in the region that is drawn, in pixels at a scale of 1."""
+    scale = bpy.context.preferences.system.ui_scale or 1  # 0 without a screen
+    return bpy.context.region.width / scale - _BORDER
 
 
 def curve_icon(datablock: plates.Datablock) -> int:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The base of operators: when they can run, the plate that a script names, and how they report a problem."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import bpy
 
@@ -23,6 +23,8 @@ class ChosenPlate:
     clip: bpy.props.StringProperty(
         name="Movie Clip", description="Name of the clip; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
+
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     #: Whether the plate must have a response.
     needs_estimate = False

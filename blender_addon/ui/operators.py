@@ -5,7 +5,7 @@ They have no panel "Adjust Last Operation" (REGISTER): it would show the argumen
 settings, and estimate the response anew, in the main thread, at every change.
 """
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
@@ -101,7 +101,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
             comparison.end_all()
             done = lazy_import.load(".scene.apply").apply(context, completed)
         if completed.is_applied:
-            remember_applied(plates.datablock_of_plate(completed.job.plate))
+            remember_applied(plates.datablock_of_plate(completed.job.plate), completed)
         running.redraw_editors(context.window_manager)
         if completed.problem is not None:  # the estimate is stored, so this is a step that can be undone
             failed(self, completed.problem)
@@ -119,7 +119,6 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
     bl_description = (
         "Estimate the camera's response from the photograph, sequence or movie. Nothing else changes until you apply it"
     )
-    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     apply: bpy.props.EnumProperty(
         name="Apply As",
@@ -134,7 +133,6 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
     bl_idname = "crf.apply_response"
     bl_label = "Apply Camera Response"
     bl_description = "Apply the response that was estimated for this plate, with the present settings"
-    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
 

@@ -9,13 +9,14 @@ from ..scene import code_values, plates, stored_estimate
 from ..scene.nodes import compositor, links
 from ..work.job import WITHOUT_FILES
 from . import running
-from .estimate_box import draw_details, draw_estimate, draw_notices, draw_paragraphs, draw_text, letters_of
+from .estimate_box import draw_details, draw_estimate, draw_notices, draw_text
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence, CRF_OT_show_plate
 from .more.load_lut import CRF_OT_load_lut
 from .more.looks import CRF_OT_add_look, draw_view
 from .more.other_plates import CRF_OT_copy_response
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
-from .plate_settings import is_applied, is_to_be_applied
+from .plate_settings import APPLIED, exported_config, has_written, is_applied, is_to_be_applied
+from .preferences import APPLY_MODES
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
@@ -41,7 +42,7 @@ class ResponsePanel(bpy.types.Panel):
             row.progress(factor=run.task.percent / 100, text=run.text)
             row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
         elif obstacle := plates.obstacle_in(context):
-            draw_text(layout, obstacle, letters_of(context), icon="INFO")
+            draw_text(layout, obstacle, icon="INFO")
             if plates.is_tiled(datablock):
                 layout.operator(CRF_OT_read_as_sequence.bl_idname, icon="SEQUENCE")
             elif CRF_OT_show_plate.poll(context):
@@ -57,30 +58,12 @@ class ResponsePanel(bpy.types.Panel):
             draw_estimate(layout, context, datablock)
             with links.trees_at_rest():
                 _draw_apply(layout, context, datablock)
-                draw_notices(layout, context, datablock)
-                _draw_warnings(layout, context, datablock)
-            draw_details(layout, context, datablock)
+                draw_notices(layout, datablock)
+                _draw_warnings(layout, datablock)
+            draw_details(layout, datablock)
         if is_stored or not plates.obstacle(datablock):
             _draw_more(layout, is_stored=is_stored)
             _draw_advanced(layout, context, datablock.camera_response_settings)
-
-
-class CRF_PT_image(ResponsePanel):
-    """The panel in the Image Editor."""
-
-    bl_space_type = "IMAGE_EDITOR"
-
-
-class CRF_PT_clip(ResponsePanel):
-    """The panel in the Movie Clip Editor."""
-
-    bl_space_type = "CLIP_EDITOR"
-
-
-class CRF_PT_node(ResponsePanel):
-    """The panel in the Compositor and the Shader Editor."""
-
-    bl_space_type = "NODE_EDITOR"
 
 
 def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -91,51 +74,84 @@ def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
 
 
-def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+def _draw_warnings(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
     """Draw warnings: the file has changed, or nodes show an earlier one, linearize it twice or not at all."""
     state = plates.file_state(datablock)
     is_changed = stored_estimate.is_file_changed(datablock, state)
-    warnings = (
+    draw_text(
+        layout,
         "The file has changed since the estimate: estimate again." if is_changed else "",
         code_values.outdated(datablock, state),
         links.linearized_twice(datablock),
         links.without_group(datablock),
         links.in_earlier_space(datablock),
+        icon="ERROR",
     )
-    draw_paragraphs(layout, [each for each in warnings if each], letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):
-        draw_text(layout, "Its nodes do not follow your painting: apply it again.", letters_of(context), icon="INFO")
+        draw_text(layout, "Its nodes do not follow your painting: apply it again.", icon="INFO")
 
 
 def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw the ways to apply the estimate, the button that does it, and the settings of the chosen way."""
-    settings, letters = datablock.camera_response_settings, letters_of(context)
-    row = layout.row(align=True)
-    row.enabled = running.current is None
-    row.prop(settings, "apply", expand=True)
+    _draw_modes(layout, datablock)
     is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
-    text, icon, state, state_icon = "Apply", "CHECKMARK", "", "NONE"
-    if not is_trusted:
-        text, icon = "Apply Anyway", "ERROR"
+    text, icon = ("Apply", "CHECKMARK") if is_trusted else ("Apply Anyway", "ERROR")
     if has_been := is_applied(datablock):
-        text, icon, state, state_icon = "Apply Again", "FILE_REFRESH", "Applied with these settings.", "CHECKMARK"
-    elif is_to_be_applied(datablock):
-        state, state_icon = "Changed settings count once they are applied.", "INFO"
+        text, icon = "Apply Again", "FILE_REFRESH"
     button = layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon)
     button.anyway = not is_trusted
-    if has_been and settings.apply not in WITHOUT_FILES:
+    if has_written(datablock):
         button.overwrite = True  # the files are its own
-    draw_text(layout, state, letters, icon=state_icon)
-    place = _place(context, datablock) if has_been else ""
-    if settings.apply == "NODES":
-        draw_text(layout, place, letters, icon="BLANK1")
+    if has_been:
+        draw_text(layout, "Applied with these settings.", icon="CHECKMARK")
+        draw_text(layout, _next_step(context, datablock), icon="BLANK1")
+    else:
+        draw_text(layout, _waiting(context.scene, datablock), icon="INFO")
     _draw_settings(layout, context, datablock)
-    if has_been and settings.apply != "EXPORT":
-        draw_view(layout, context, is_composited=bool(place))
+    if has_been and datablock.camera_response_settings.apply != "EXPORT":
+        draw_view(layout, context.scene, datablock, is_composited=bool(_place(context, datablock)))
+
+
+def _draw_modes(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
+    """Draw the ways to apply the estimate; Bake is gray for movies, and a line says why."""
+    is_movie, row = datablock.source == "MOVIE", layout.row(align=True)
+    for mode, *_ in APPLY_MODES:
+        choice = row.row(align=True)
+        choice.enabled = running.current is None and not (is_movie and mode == "BAKE")
+        choice.prop_enum(datablock.camera_response_settings, "apply", mode)
+    if is_movie:
+        draw_text(layout, "Movies are not baked: use Nodes, or open an image sequence.", icon="INFO")
+
+
+def _waiting(scene: bpy.types.Scene, datablock: plates.Datablock) -> str:
+    """Return in words how what was applied differs from what the panel shows; an empty text if nothing was."""
+    nodes = links.groups_of(datablock, scene)
+    if not is_to_be_applied(datablock):
+        is_new = APPLIED not in datablock[stored_estimate.KEY]
+        return "Its nodes keep the earlier response until you apply this one." if nodes and is_new else ""
+    if compositor.has_exposure(datablock, scene, stored_estimate.exposure(datablock)):
+        return "Changed settings count once they are applied."
+    exposures = {f"{node.inputs['Exposure'].default_value:.2f}" for node in nodes}
+    return f"The nodes of this scene have exposure {' and '.join(sorted(exposures))} until you apply."
+
+
+def _next_step(context: bpy.types.Context, datablock: plates.Datablock) -> str:
+    """Return where the result of what was applied is, or what it is for."""
+    match datablock.camera_response_settings.apply:
+        case "NODES":
+            return _place(context, datablock)
+        case "EXPORT":
+            return f"Start Blender with OCIO={exported_config(datablock)}"
+    every = bpy.data.images if isinstance(datablock, bpy.types.Image) else bpy.data.movieclips
+    baked = next((each.name for each in every if each.get(plates.BAKED_FROM) == datablock.name), "")
+    choose = ": choose it in the node" if context.space_data.type == "NODE_EDITOR" else ""
+    return f'The linear plate is "{baked}"{choose}.' if baked else ""
 
 
 def _place(context: bpy.types.Context, datablock: plates.Datablock) -> str:
     """Return where the nodes of an applied plate in the compositor show it, or how they come to; empty in a shader."""
+    if getattr(context.space_data, "tree_type", "") == plates.SHADER:
+        return ""
     groups = [node for node in links.groups_of(datablock, context.scene) if node.bl_idname == "CompositorNodeGroup"]
     behind = [node for group in groups for node in links.nodes_behind(group)]
     if not groups:
@@ -188,11 +204,8 @@ def _draw_advanced(layout: bpy.types.UILayout, context: bpy.types.Context, setti
         row.prop(settings, "gray", slider=True)
         if context.space_data.type == "IMAGE_EDITOR":
             row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
-    column.prop(settings, "camera")
-    column.prop(settings, "prior")
-    column.prop(settings, "device")
-    column.prop(settings, "ignore_metadata")
-    column.prop(settings, "force")
+    for name in ("camera", "prior", "device", "ignore_metadata", "force"):
+        column.prop(settings, name)
 
 
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
@@ -204,7 +217,9 @@ def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     return column
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_PT_image, CRF_PT_clip, CRF_PT_node))
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    [type(f"CRF_PT_{editor.lower()}", (ResponsePanel,), {"bl_space_type": editor}) for editor in plates.EDITORS]
+)
 
 
 def register() -> None:

@@ -2,6 +2,7 @@
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -13,6 +14,9 @@ from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .image_editor import comparison
 from .preferences import APPLY_MODES, FOLDER, preferences
+
+if TYPE_CHECKING:
+    from ..work.run import CompletedJob
 
 #: The anchors of the exposure, `work.job.Anchor`.
 ANCHORS = (
@@ -47,8 +51,8 @@ MAX_EXPOSURE = 15
 #: The names of the ways to apply a response, by the order of their enumeration.
 _MODES = [item[0] for item in APPLY_MODES]
 
-#: The entry of a stored estimate with the settings that were applied last.
-APPLIED = "applied_settings"
+#: The entries of a stored estimate with the settings that were applied last, and with the config exported by them.
+APPLIED, CONFIG = "applied_settings", "exported_config"
 
 
 def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
@@ -133,6 +137,12 @@ class PlateChoices:
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
+def _choice(settings: bpy.types.PropertyGroup) -> int:
+    """Return how to apply the response of a plate: as chosen for it or last; movies are not baked."""
+    mode = settings.chosen if settings.chosen in _MODES else preferences().apply_as
+    return _MODES.index("NODES" if mode == "BAKE" and settings.id_data.source == "MOVIE" else mode)
+
+
 def _choose(settings: bpy.types.PropertyGroup, number: int) -> None:
     """Choose how to apply the response of a plate, and of plates for which nothing is chosen yet."""
     settings.chosen = preferences().apply_as = _MODES[number]
@@ -148,7 +158,7 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
-        get=lambda self: _MODES.index(self.chosen if self.chosen in _MODES else preferences().apply_as),
+        get=_choice,
         set=_choose,
     )
     compose: bpy.props.BoolProperty(
@@ -162,9 +172,21 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
     )
 
 
-def remember_applied(datablock: bpy.types.ID) -> None:
-    """Remember on a plate with an estimate that its present settings have been applied."""
+def remember_applied(datablock: bpy.types.ID, completed: "CompletedJob") -> None:
+    """Remember on a plate with an estimate that its present settings have been applied, and the exported config."""
     stored_estimate.set_entry(datablock, APPLIED, _comparable(datablock.camera_response_settings))
+    stored_estimate.set_entry(datablock, CONFIG, str(getattr(completed.files, "config", "")))
+
+
+def exported_config(datablock: bpy.types.ID) -> str:
+    """Return the config that was exported for a plate with an estimate last; an empty text if it is not known."""
+    return datablock[stored_estimate.KEY].get(CONFIG, "")
+
+
+def has_written(datablock: bpy.types.ID) -> bool:
+    """Return whether a plate with an estimate has written files last, of the kind and to the folder of its settings."""
+    applied, present = datablock[stored_estimate.KEY].get(APPLIED, {}), _comparable(datablock.camera_response_settings)
+    return "folder" in present and all(applied.get(name) == present[name] for name in ("apply", "folder"))
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:

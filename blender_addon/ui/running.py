@@ -19,8 +19,8 @@ from ..work.background import BackgroundTask
 #: Seconds between two checks of whether the job has ended.
 TICK = 0.05
 
-#: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
-REDRAW, LONGEST, DRAWING_SHARE = 1.0, 5.0, 0.1
+#: Seconds between two displays of the progress: without a graphics card, one takes a third of a second.
+REDRAW = 2.0
 
 #: The run that is under way, or None.
 current: Run | None = None
@@ -39,7 +39,6 @@ class Run:
         self._timer = self._manager.event_timer_add(TICK, window=context.window)
         self._manager.progress_begin(0, 100)
         self._shown, self._shown_at = "", 0.0
-        self._pause: float | None = 0.0  # seconds until the next display; None until it is known how long drawing took
 
     @property
     def text(self) -> str:
@@ -52,18 +51,15 @@ class Run:
     def cancel(self) -> None:
         """Ask the job to stop, and show that it was asked."""
         self.task.cancelled.set()
-        self._pause = 0.0
+        self._shown_at = 0.0
         self.show()
 
     def show(self) -> None:
         """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now."""
-        since = time.monotonic() - self._shown_at
-        if self._pause is None:  # the call after a display comes late by the time that drawing took
-            self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
         text = self.text if self.task.cancelled.is_set() else f"Camera response: {self.text}  |  Esc to cancel"
-        if text == self._shown or since < self._pause:
+        if text == self._shown or time.monotonic() - self._shown_at < REDRAW:
             return
-        self._shown, self._shown_at, self._pause = text, time.monotonic(), None
+        self._shown, self._shown_at = text, time.monotonic()
         set_status(self._workspace, text)
         self._manager.progress_update(self.task.percent)
         redraw_editors(self._manager, regions=("UI",))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,21 +26,11 @@ REMEDIES = {
     "files_exist": "tick Overwrite",
 }
 
-#: Code of a warning -> the few words that fit into Blender's status bar; other warnings stand there as they are.
-SHORT_WARNINGS = {
-    "answer_of_windows": "the paper's network, worse than the default",
-    "clipped": "mostly clipped",
-    "developed": "developed from a raw file by {editor}",
-    "edited": "saved by {editor}",
-    "gray": "gray photograph",
-    "narrow_range": "no window covers the range of brightness",
-}
-
 
 class PanelText(NamedTuple):
     """The panel's sentences about an estimate: paragraphs are separated by line breaks."""
 
-    advice: str = ""
+    advice: str = ""  # of an estimate that is not to be trusted: the cause, then the remedy
     details: str = ""
     warnings: str = ""
 
@@ -51,13 +42,14 @@ def panel_text(estimate: ResponseEstimate) -> PanelText:
 
     if is_loaded(estimate.uncertainty):
         return PanelText(details=f"The response is {estimate.model}: it is not an estimate, so it has no verdict.")
-    device = ", or say with Taken With under Advanced which kind of camera took it, if it is a photograph"
-    phrases = Phrases(calibrate="", state_device=device, has_e_est=False)
+    phrases = Phrases(calibrate="", state_device=", or choose Advanced > Taken With", has_e_est=False)
     _verdict, *lines = verdict_lines(estimate, phrases)
+    causes = [warning for warning in estimate.warnings if warning.code == "recognized"]
+    others = [warning for warning in estimate.warnings if warning not in causes]
     return PanelText(
-        advice=_sentence(verdict_advice(estimate, phrases)),
+        advice=_sentences([*causes, *verdict_advice(estimate, phrases).split(", so ")]),
         details="\n".join(lines[: len(lines) - len(estimate.warnings)]),  # the warnings come last
-        warnings="\n".join(_sentence(str(warning)) for warning in estimate.warnings),
+        warnings=_sentences(others),
     )
 
 
@@ -72,9 +64,9 @@ def problem_line(problem: Exception) -> str:
     return f"{problem}; {remedy}" if remedy else str(problem)
 
 
-def _sentence(text: str) -> str:
-    """Return a text with a capital letter and a full stop; an empty one as it is."""
-    return f"{text[:1].upper()}{text[1:]}." if text else ""
+def _sentences(texts: Iterable[object]) -> str:
+    """Return texts with a capital letter and a full stop, a line each; empty ones are left out."""
+    return "\n".join(f"{text[:1].upper()}{text[1:]}." for text in map(str, texts) if text)
 
 
 def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
@@ -85,15 +77,16 @@ def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
 def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done.
 
-    Blender cuts lines that are too long in their middle, so names and warnings are short.
+    Blender cuts lines that are too long in their middle, so the name is short, and the warning only its first part.
     """
     name = shortened(name)
     if is_loaded(estimate.uncertainty):
         return f"{name}: the response is {estimate.model}; {done}"
     warning = ""
     if estimate.warnings:
-        more = f", and {len(estimate.warnings) - 1} more" if estimate.warnings[1:] else ""
-        warning = f" (warning: {_first_warning(estimate)}{more})"
+        first, *others = map(str, estimate.warnings)
+        more = f", and {len(others)} more" if others else ""
+        warning = f" (warning: {re.split('[:,;] ', first)[0]}{more})"
     verdict = estimate.verdict.value
     sentence = f"the response is {'not to be trusted' if verdict == 'do not trust' else verdict}"
     if says_too_little(verdict, [each.code for each in estimate.warnings]):
@@ -104,12 +97,3 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
 def shortened(text: str, most: int = 48) -> str:
     """Return a name or path of at most so many letters: the middle of a longer one is left out."""
     return text if len(text) <= most else f"{text[: most // 2 - 2]}...{text[1 - most // 2 :]}"
-
-
-def _first_warning(estimate: ResponseEstimate) -> str:
-    """Return the first warning in a few words."""
-    first = estimate.warnings[0]
-    if estimate.recognition and first.code == "recognized":
-        return estimate.recognition.kind.value
-    short = SHORT_WARNINGS.get(first.code)
-    return short.format(**first.facts) if short else str(first)

@@ -68,7 +68,7 @@ def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
 
 
 def offered_cameras(estimate: ResponseEstimate) -> tuple[CameraAnswer, ...]:
-    """Return the cameras of the first photograph's make and model: offered, never used unasked.
+    """Return the cameras of the first photograph's make and model, the most exact first: offered, never used unasked.
 
     A photograph that a program developed from a raw file has none, because its response is not the camera's.
     """
@@ -76,7 +76,8 @@ def offered_cameras(estimate: ResponseEstimate) -> tuple[CameraAnswer, ...]:
         return ()
     model = estimate.origins[0].camera.casefold()
     cameras = [camera for camera in known_cameras() if model and camera.settings.camera.casefold() == model]
-    return tuple(CameraAnswer(camera.name, camera.basis) for camera in cameras)
+    exact = sorted(cameras, key=lambda camera: camera.shape_stops)
+    return tuple(CameraAnswer(camera.name, camera.basis) for camera in exact)
 
 
 def brightness_per_stop(curve: ResponseCurve) -> Float64Array:

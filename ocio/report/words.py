@@ -35,7 +35,7 @@ GRAY_TOLERANCE = 0.0005
 REMEDIES = {
     Family.LINEAR: "it seems to be linear already, so give it a linear color space",
     Family.LOG: "it seems to be log footage, so give it the color space of its log curve",
-    Family.UNEXPLAINED: "no camera response explains this picture, so take a photograph as the camera wrote it",
+    Family.UNEXPLAINED: "no camera response explains this picture, so use the file as the camera wrote it",
 }
 
 

@@ -19,7 +19,10 @@ def test_the_panel_names_its_own_settings_and_no_figure_of_the_papers(found):
     families = {Family.UNEXPLAINED: 1.0}
     doubtful = dataclasses.replace(found, verdict=Verdict.DO_NOT_TRUST, families=families, origins=())
     text = panel_text(doubtful)
-    assert "Taken With under Advanced" in text.advice
+    assert text.advice.splitlines() == [
+        "No camera response explains this picture.",
+        "Use the file as the camera wrote it, or choose Advanced > Taken With.",
+    ]
     assert not any(word in " ".join(text) for word in ("E_est", "--", "crfnet"))
     assert panel_text(found).advice == ""
 

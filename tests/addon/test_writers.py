@@ -23,8 +23,8 @@ CURVE = ResponseCurve.gamma(2.2)
 LUT = inverse_response_lut(CURVE)
 
 
-def write(job, progress=None, stops=0.0):
-    return writers.write(job, LUT, stops, lambda: find_frames(job.plate.file), progress)
+def write(job, progress=None):
+    return writers.write(job, LUT, 0.0, lambda: find_frames(job.plate.file), progress)
 
 
 def cancelled_after(steps):
@@ -33,12 +33,6 @@ def cancelled_after(steps):
             raise CancelledError("Cancelled; nothing was changed")
 
     return progress
-
-
-def test_a_baked_plate_is_linear(make_job, tmp_path, codes):
-    baked = write(make_job(), stops=1)
-    assert baked == writers.Baked((tmp_path / "out" / "plate_linear.exr",), is_sequence=False)
-    assert np.abs(read_image(baked.files[0]) - 2 * CURVE.inverse(codes / 255)).max() < 1e-5
 
 
 @pytest.mark.parametrize("before", ["shot.1-2.", "shot.1-2x", "take#_", "a%02d_", "b$F4.", "[1-2]@@."])
@@ -95,8 +89,8 @@ def test_alpha_is_taken_as_by_blender(tmp_path, alpha_mode, color, alpha, suffix
 
 def test_alpha_that_is_no_coverage_is_written_in_the_same_pass(make_job, tmp_path, codes):
     path = write_image(tmp_path / "a.png", np.dstack([codes, codes[..., :1]]), oiio__UnassociatedAlpha=1)
-    job, calls = with_alpha(make_job(path), "CHANNEL_PACKED"), []
-    (target,) = write(job, lambda *call: calls.append(call)).files
+    job, calls, target = with_alpha(make_job(path), "CHANNEL_PACKED"), [], tmp_path / "out" / "a_linear.exr"
+    assert write(job, lambda *call: calls.append(call)) == writers.Baked((target,), is_sequence=False)
     assert calls[-1] == (1, 1)
     assert np.abs(read_image(target)[..., :3] - CURVE.inverse(codes / 255)).max() < 1e-5
     np.testing.assert_array_equal(read_image(target)[..., 3], codes[..., 0] / np.float32(255))
@@ -113,18 +107,17 @@ def test_a_frame_that_fails_takes_the_others_back(make_job, sequence_file, tmp_p
     assert not (tmp_path / "out").exists()
 
 
-def test_an_export_is_that_of_the_command(make_job, tmp_path):
+def test_an_export_is_that_of_the_command_and_built_on_the_running_config_which_stays(
+    make_job, running_config, tmp_path
+):
+    before = running_config.read_bytes()
     exported = write(make_job(mode=ApplyMode.EXPORT))
     assert exported.folder == tmp_path / "out"
     assert set(listed(exported.folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
     assert sorted(exported.files) == sorted(exported.folder.iterdir())
     for suffix in WRITERS:
         np.testing.assert_array_equal(read_lut(exported.folder / f"plate{suffix}").values, LUT.values)
-
-
-def test_an_export_is_built_on_the_running_config_which_stays(make_job, running_config):
-    before = running_config.read_bytes()
-    config = loaded(write(make_job(mode=ApplyMode.EXPORT)).config)
+    config = loaded(exported.config)
     assert list(config.getColorSpaceNames()) == [*loaded(running_config).getColorSpaceNames(), "CRF plate"]
     assert running_config.read_bytes() == before
     with refused(ConfigError, "base_would_change"):

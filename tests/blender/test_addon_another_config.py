@@ -19,6 +19,8 @@ print("imported:", convert.from_color_space + ",", here.images[0].colorspace_set
 
 SAVE = "bpy.ops.wm.save_as_mainfile(filepath={!r})"
 
+STANDARD = "bpy.ops.crf.standard_view(); print('view:', bpy.context.scene.view_settings.view_transform)"
+
 
 @pytest.mark.parametrize("has_look", [False, True])
 def test_they_give_the_same_light(image, composited, rendered_anew, codes, tmp_path, has_look):
@@ -35,7 +37,8 @@ def test_they_give_the_same_light(image, composited, rendered_anew, codes, tmp_p
     elif not IS_BLENDER_5:  # later, the file keeps its working space, linear Rec.709
         config.getProcessor("Linear Rec.709 (sRGB)", "ACEScg").getDefaultCPUProcessor().applyRGB(expected)
     back = str(tmp_path / "back.blend")
-    pixels, log = rendered_anew(ACES, SAVE.format(back))
+    pixels, log = rendered_anew(ACES, f"{SAVE.format(back)}; {STANDARD}")
+    assert "view: Un-tone-mapped" in log
     assert np.abs(pixels[..., :3] - expected).max() < 1e-5, log
     bpy.ops.wm.open_mainfile(filepath=back)  # made under ACES, as far as Blender knows
     if has_look:

@@ -1,11 +1,13 @@
 """A stored camera in Blender: listed, used, remembered, and refused if it is not there."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from tests.helpers.cameras import camera, photograph
 
-from .helpers import apply, bpy, estimate, load, stored_estimate
+from .helpers import apply, bpy, drawn_in, estimate, labels, load, operators, stored_estimate
 
 
 @pytest.fixture
@@ -59,10 +61,17 @@ def of_that_model(addon, plate_file, tmp_path):
     return load(photograph(plate_file, tmp_path / "sony.jpg"))
 
 
-def test_a_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_model, curve):
+def test_the_best_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_model, curve, in_editor):
+    from crfnet_core.library import CameraLibrary
+
+    worse = camera("a", make="SONY", model="ILCE-7M3")
+    CameraLibrary.of_user().save(dataclasses.replace(worse, shape_stops=0.06))
     bpy.ops.crf.estimate_response(image=of_that_model.name)
-    ((name, words),) = stored_estimate.offers(of_that_model)
-    assert (name, words) == ("mine", "mine: measured from 6 exposures")
+    (name, words), (other, _) = stored_estimate.offers(of_that_model)
+    assert (name, other, words) == ("mine", "a", "mine: measured from 6 exposures")
+    drawn = drawn_in(of_that_model, in_editor)
+    assert "was measured from 6 exposures. Others: Advanced > Camera." in " ".join(labels(drawn))
+    assert [text for _, text in operators(drawn) if text.startswith("Use ")] == ["Use mine"]
     bpy.ops.crf.estimate_response(image=of_that_model.name, camera=name)
     assert stored_estimate.offers(of_that_model) == []
     assert stored_estimate.camera(of_that_model) == "mine"

@@ -22,7 +22,7 @@ class TestOpenedAgain:
         apply(image)
         assert bpy.data.images.load(str(plate_file), check_existing=True) == image
 
-    def test_an_editor_that_shows_the_code_values_has_the_panel_of_the_plate(self, image, in_editor):
+    def test_where_the_code_values_are_shown_the_plate_counts_and_they_are_no_plate(self, image, in_editor):
         apply(image)
         with in_editor("IMAGE_EDITOR") as space:
             space.image = code_values_of(image)
@@ -30,9 +30,6 @@ class TestOpenedAgain:
             assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
             assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
             assert space.image == image
-
-    def test_the_code_values_are_no_plate_of_their_own(self, image):
-        apply(image)
         with pytest.raises(RuntimeError, match="open the photograph itself"):
             bpy.ops.crf.estimate_response(image=code_values_of(image).name, apply="ESTIMATE")
 

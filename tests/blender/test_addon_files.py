@@ -1,5 +1,6 @@
 """Bake and export: files judged by their pixels, the exported config in a Blender started with it."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed
 from tests.helpers.reference_exr import read_reference
 
-from .helpers import apply, bpy, drawn_in, load, pixels_of, scene_tree
+from .helpers import apply, bpy, drawn_in, labels, load, pixels_of, scene_tree
 from .helpers import estimate as run
 
 FLOAT, HALF = 1e-6, 2**-11
@@ -28,11 +29,16 @@ def test_bake(image, plate_file, codes, estimate, depth, limit):
 
 
 def test_export(image, plate_file, tmp_path, codes, estimate, in_editor):
+    from blender_addon.ui.more.load_lut import _first_folder
+
     folder = tmp_path / "look"
     image.camera_response_settings.apply, image.camera_response_settings.folder = "EXPORT", str(folder)
     run(image, "EXPORT", folder=str(folder))
-    assert ("set", "overwrite", True) in drawn_in(image, in_editor)  # of Apply Again
-    image.camera_response_settings.folder = str(tmp_path)
+    assert f"OCIO={folder / 'config.ocio'}" in "".join(labels(drawn_in(image, in_editor)))  # lines may end in the path
+    assert _first_folder(image) == f"{folder}{os.sep}"
+    image.camera_response_settings.exposure = 1
+    assert ("set", "overwrite", True) in drawn_in(image, in_editor)  # the files are its own
+    image.camera_response_settings.exposure, image.camera_response_settings.folder = 0, str(tmp_path)
     assert ("set", "overwrite", True) not in drawn_in(image, in_editor)
     assert set(listed(folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
     expected = estimate(plate_file).curve.inverse(codes / 255)
@@ -71,13 +77,8 @@ def test_a_blender_that_is_started_with_the_exported_config(
 
 def test_the_environments_config_is_the_base(image, tmp_path, monkeypatch):
     """A studio's ACES config has no AgX, and the exported one has all that it has."""
-    import PyOpenColorIO as OCIO
-
-    studio = tmp_path / "studio.ocio"
-    studio.write_text(OCIO.Config.CreateFromBuiltinConfig("studio-config-v2.1.0_aces-v1.3_ocio-v2.3").serialize())
-    before = studio.read_bytes()
-    monkeypatch.setenv("OCIO", str(studio))
-    run(image, "EXPORT", folder=str(tmp_path / "mine"))
-    assert studio.read_bytes() == before
-    names = OCIO.Config.CreateFromFile(str(tmp_path / "mine" / "config.ocio")).getColorSpaceNames()
-    assert list(names) == [*OCIO.Config.CreateFromFile(str(studio)).getColorSpaceNames(), "CRF plate"]
+    studio = "ocio://studio-config-v2.1.0_aces-v1.3_ocio-v2.3"
+    monkeypatch.setenv("OCIO", studio)
+    run(image, "EXPORT", folder=str(tmp_path))
+    names = loaded(tmp_path / "config.ocio").getColorSpaceNames()
+    assert list(names) == [*loaded(studio).getColorSpaceNames(), "CRF plate"]

@@ -39,7 +39,7 @@ def test_the_panel_says_so_and_has_no_verdict(image, lut_file, in_editor):
     image.camera_response_settings.apply = "NODES"
     drawn = drawn_in(image, in_editor)
     words = " ".join(labels(drawn))
-    assert next(entry for entry in drawn if entry[0] == "label") == ("label", "Loaded", "FILE")
+    assert next(entry for entry in drawn if entry[0] == "label") == ("label", "From a LUT", "FILE")
     assert "Loaded from camera.spi1d" in words
     assert not [word for word in ("Usable", "Expected error", "windows agree") if word in words]
     assert ("crf.apply_response", "Apply") in operators(drawn)

@@ -7,7 +7,19 @@ from crfnet.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 
-from .helpers import IS_BLENDER_5, apply, bpy, curve_of, estimate, group_node, load, output, scene_tree
+from .helpers import (
+    IS_BLENDER_5,
+    apply,
+    bpy,
+    curve_of,
+    drawn_in,
+    estimate,
+    group_node,
+    labels,
+    load,
+    output,
+    scene_tree,
+)
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -72,14 +84,10 @@ def test_it_undoes_it_in_another_working_space(look, plate_file, codes, tmp_path
     assert np.abs(saved[..., :3] - codes).max() <= 1
 
 
-def test_the_view_becomes_standard_and_a_saved_render_is_the_plate(look, plate_file, codes, tmp_path):
+def test_saved_through_standard_it_is_the_plate_and_its_code_values_are_through_raw(look, plate_file, codes, tmp_path):
     assert bpy.context.scene.view_settings.view_transform == "AgX"
-    look(plate_file, exposure=1)
-    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
-
-
-def test_code_values_saved_through_raw_are_the_plate(look, plate_file, codes, tmp_path):
     _, node = look(plate_file, exposure=1)
+    assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
     scene_tree().links.new(node.outputs["Code Values"], output().inputs[0])
     bpy.context.scene.view_settings.view_transform = "Raw"
     assert np.array_equal(save(tmp_path / "saved.png")[..., :3], codes)
@@ -102,14 +110,20 @@ def test_light_beyond_the_camera_clips(look, composited, plate_file):
     assert 0 < green < 1
 
 
-def test_it_stands_before_the_output_once(look, plate_file):
+def test_it_stands_before_the_output_once_and_the_panel_says_so(look, plate_file, in_editor):
     image, node = look(plate_file)
+    drawn = drawn_in(image, in_editor)
+    assert "The output has the Camera Look: it is not linear." in " ".join(labels(drawn))
+    assert ("prop", node, "mute", "Mute Camera Look") in drawn
+    node.mute = True
+    assert "Camera Look:" not in " ".join(labels(drawn_in(image, in_editor)))
     ends = {link.to_node.type for link in node.outputs["Image"].links}
     assert ends == {"VIEWER", output().type}
     assert node.inputs["Image"].links[0].from_node == group_node()
     group_node().inputs["Exposure"].default_value = 0.75
     bpy.ops.crf.add_look(image=image.name)
     assert group_node("Camera Look") == node
+    assert not node.mute
     assert node.inputs["Exposure"].default_value == 0.75
     assert node.inputs["Image"].links[0].from_node == group_node()
 

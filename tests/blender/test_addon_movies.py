@@ -1,11 +1,13 @@
 """Movies: the code values of the frame shown, estimates and errors."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import IS_BLENDER_5, bpy, curve_of, estimate, group_node, load, load_sequence, pixels_of, plates, show
+from .helpers import IS_BLENDER_5, bpy, curve_of, drawn_in, estimate, group_node, load, pixels_of, plates, show
 
 FRAMES = 12
 
@@ -40,8 +42,8 @@ def encode(path, frames, color_mode="RGB"):
     """Encode 8-bit frames as they are."""
     container, codec, depth = CODECS[path.name]
     scene = bpy.data.scenes.new("Encoder")
-    image = load_sequence(frames[0])
-    image.colorspace_settings.name = "Non-Color"
+    image = load(frames[0])
+    image.source, image.colorspace_settings.name = "SEQUENCE", "Non-Color"
     tree, output = empty_tree(scene)
     node = tree.nodes.new("CompositorNodeImage")
     node.image = image
@@ -92,6 +94,17 @@ def test_a_plate_holds_the_code_values_of_the_frame_shown(movie, codes, kind, nu
         assert np.abs(difference).max() <= most
         assert abs(difference.mean()) < 0.1
     assert [image for image in bpy.data.images if image not in images and kind == "clip"] == []
+
+
+def test_bake_is_gray_and_not_the_choice_for_a_movie(movie, addon, in_editor):
+    image = load(movie("rgb.mkv"))
+    estimate(image)
+    addon.apply_as = "BAKE"
+    assert image.camera_response_settings.apply == "NODES"
+    drawn = drawn_in(image, in_editor)
+    choices = [before[2] for before, entry in pairwise(drawn) if entry[0] == "prop_enum"]
+    assert choices == [True, False, True]  # whether they are enabled
+    assert "Movies are not" in str(drawn)
 
 
 def test_a_movie_of_ten_bits_has_no_code_values(movie):

@@ -2,12 +2,16 @@
 
 import pytest
 
-from .helpers import Layout, apply, bpy, drawn_here, drawn_in, estimate, labels, operators
+from .helpers import apply, bpy, drawn_here, drawn_in, estimate, labels, operators
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
 
-@pytest.mark.parametrize("mode", ["NODES", "BAKE", "EXPORT"])
+#: The ways to apply a response.
+MODES = ["NODES", "BAKE", "EXPORT"]
+
+
+@pytest.mark.parametrize("mode", MODES)
 def test_it_draws_every_mode(image, in_editor, mode):
     """Apply comes right behind the verdict, the curve and the ways to apply it; no word stands between."""
     image.camera_response_settings.apply = mode
@@ -15,7 +19,8 @@ def test_it_draws_every_mode(image, in_editor, mode):
     properties = [entry[2] for entry in drawn if entry[0] == "prop"]
     apply = drawn.index(("operator", "crf.apply_response", "Apply", "CHECKMARK"))
     curve = next(n for n, entry in enumerate(drawn) if entry[0] == "template_icon")
-    assert [entry[2] for entry in drawn[:apply] if entry[0] == "prop"] == ["apply"]
+    assert [entry[2:] for entry in drawn if entry[0] == "prop_enum"] == [("apply", mode) for mode in MODES]
+    assert not [entry for entry in drawn[:apply] if entry[0] == "prop"]
     assert not labels(drawn[curve:apply])
     assert ("compose" in properties) == (mode == "NODES")
     words = " ".join(labels(drawn))
@@ -50,12 +55,15 @@ def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdic
 
 def test_every_line_fits_the_sidebar(image, in_editor):
     """20 letters, with an icon 17, is the least; only the verdict and buttons are longer words of their own."""
-    image["camera_response"]["warnings"] = "This photograph is gray, so the edges say nothing of the response."
+    image["camera_response"]["warnings"] = (
+        "This photograph is gray, so the edges say nothing of range=limited:out=full."
+    )
     drawn = drawn_in(image, in_editor)
     for entry in drawn:
         if entry[0] == "label" and len(entry) > 2:
             assert len(entry[1]) <= (20 if entry[2] == "NONE" else 17), entry
     assert "This photograph is gray, so the edges say nothing" in " ".join(labels(drawn))
+    assert any(line.endswith("range=limited:") for line in labels(drawn))  # a long option is broken behind a colon
 
 
 def test_a_narrow_range_is_no_more_than_the_mean_of_cameras(image, in_editor):
@@ -77,6 +85,9 @@ def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
     assert shown(image, in_editor) == ("Apply Again", True, False)
     estimate(image)  # another response, which is not applied
     assert shown(image, in_editor) == ("Apply", False, False)
+    assert "Its nodes keep the earlier response until you apply this one." in " ".join(
+        labels(drawn_in(image, in_editor))
+    )
 
 
 def shown(image, in_editor):
@@ -128,11 +139,3 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["device"].enum_items.keys() == ["file", *defaults.DEVICES]
     assert -settings["exposure"].hard_min == settings["exposure"].hard_max == defaults.MAX_EXPOSURE
     assert defaults.CONFIG_NAME == CONFIG_NAME
-
-
-def test_a_long_option_is_broken_behind_a_colon(addon):
-    from blender_addon.ui.estimate_box import draw_text
-
-    layout = Layout()
-    draw_text(layout, "use its filter scale=in_range=limited:out_range=full first", 32)
-    assert labels(layout.drawn) == ["use its filter", "scale=in_range=limited:", "out_range=full first"]

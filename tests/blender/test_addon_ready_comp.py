@@ -114,13 +114,13 @@ def test_a_node_of_the_plate_that_leads_nowhere_becomes_part_of_it(image, tree):
 def test_a_view_that_darkens_highlights_is_named_and_one_click_sets_standard(image, in_editor):
     view = bpy.context.scene.view_settings
     view.view_transform, view.exposure, view.gamma = "AgX", 1, 2
-    buttons = {("crf.standard_view", "HIDE_OFF"), ("crf.add_look", "Match the Photograph")}
+    buttons = {("crf.standard_view", "Standard View"), ("crf.add_look", "Match the Photograph")}
     assert not buttons & set(operators(drawn_in(image, in_editor)))  # nothing is linear yet
     apply(image)
     drawn = drawn_in(image, in_editor)
     assert "AgX darkens the highlights of the plate." in " ".join(labels(drawn))
     assert buttons <= set(operators(drawn))
-    assert drawn[drawn.index(("label", "AgX darkens the", "INFO")) - 3][0] == "box"  # apart from offers of cameras
+    assert drawn[drawn.index(("label", "AgX darkens the", "INFO")) - 4][0] == "box"  # apart from offers of cameras
     assert bpy.ops.crf.standard_view() == {"FINISHED"}
     assert (view.view_transform, view.look, view.exposure, view.gamma) == ("Standard", "None", 0, 1)
     assert not buttons & set(operators(drawn_in(image, in_editor)))

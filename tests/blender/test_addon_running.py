@@ -3,7 +3,6 @@
 import threading
 import time
 
-import numpy as np
 import pytest
 
 from .helpers import bpy, drawn_in, operators
@@ -50,28 +49,9 @@ def test_the_progress_is_drawn_only_if_it_changed_and_seldom(waiting, interface,
         job.progress(percent, 100)
         now[0] += 0.1
         run.show()
-    assert 4 <= len(interface.status) - drawn[0] <= 6  # in five seconds
+    assert 2 <= len(interface.status) - drawn[0] <= 3  # in five seconds
     assert set(interface.redrawn) == {"UI"}  # never the picture
     assert "50 %" in run.text
-
-
-def test_where_drawing_is_slow_the_progress_is_drawn_more_seldom(waiting, interface, monkeypatch):
-    """A display that takes 0.3 s is followed by 3 s without one."""
-    from blender_addon.ui import running
-
-    run, job = waiting
-    now = [time.monotonic() + 1]
-    monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
-    shown = []
-    for step in range(1, 201):
-        job.progress(step, 200)
-        before = len(interface.status)
-        run.show()
-        is_shown = len(interface.status) > before
-        shown += [now[0]] * is_shown
-        now[0] += running.TICK + 0.3 * is_shown
-    assert np.diff(shown).min() > 2.9
-    assert len(shown) >= 3
     run.cancel()  # at once
     assert interface.status[-1] == "Canceling"
 

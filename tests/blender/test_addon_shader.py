@@ -68,6 +68,7 @@ def group_in(tree):
 def test_it_goes_between_the_texture_and_what_follows_and_gives_the_light_of_every_code(shader, image, codes):
     drawn = shader.show(image, response)
     assert ("crf.apply_response", "Apply Again") in operators(drawn)
+    assert "Look at the linear plate" not in words(drawn)  # no button shows it here
     node = group_in(shader.tree)
     assert node.inputs["Color"].links[0].from_node == shader.texture
     assert shader.glow.inputs["Color"].links[0].from_node == node
@@ -81,6 +82,9 @@ def test_it_goes_between_the_texture_and_what_follows_and_gives_the_light_of_eve
     apply(image, exposure=-1)  # in the compositor: the shader is brought up to date
     assert group_in(shader.tree).node_tree == group
     assert node.inputs["Exposure"].default_value == group_node().inputs["Exposure"].default_value == -1
+    image.camera_response_settings.apply = "BAKE"
+    drawn = shader.show(image, lambda: apply(image, "BAKE"))
+    assert 'The linear plate is "plate_linear.exr": choose it in the node.' in words(drawn).replace(". exr", ".exr")
 
 
 @pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED"])
@@ -136,6 +140,7 @@ def test_a_group_that_is_muted_or_missing_is_told_and_mended(shader, image):
     shader.tree.nodes.remove(node)
     shader.tree.links.new(shader.texture.outputs["Color"], shader.glow.inputs["Color"])
     drawn = shader.show(image)
+    assert "Its nodes keep the earlier response" not in words(drawn)
     assert "without the node group" in words(drawn)
     assert ("crf.apply_response", "Apply") in operators(drawn)
     shader.show(image, lambda: apply(image))

@@ -252,10 +252,10 @@ def test_two_enabled_copies_of_the_addon_are_named(addon):
     from blender_addon import lazy_import
 
     second = bpy.context.preferences.addons.new()
-    second.module = "bl_ext.studio.blender_addon"
+    second.module = "bl_ext.user_default.blender_addon"
     line = lazy_import.missing()
     bpy.context.preferences.addons.remove(second)
-    assert line.endswith("remove blender_addon or bl_ext.studio.blender_addon")
+    assert line.endswith("uninstall the copy of blender_addon or User Default")
     assert not lazy_import.missing()
 
 

@@ -42,7 +42,7 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
     group = _build(plate, name, curve)
     linearizing = (node for node in tree.nodes if holds_group_of(node, plate))
     node = _node_before_output(tree, group)
-    node.node_tree = group
+    node.node_tree, node.mute = group, False
     node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in linearizing), exposure)
     activate(node)
 

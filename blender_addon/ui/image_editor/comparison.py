@@ -18,8 +18,7 @@ import numpy as np
 
 from ... import lazy_import
 from ...scene.color_management import running_config
-from ...scene.packed_images import codes_of_frame, pixels_of
-from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, is_heif, plate_itself, plate_of
+from ...scene.plates import COMPARED_PLATE, compared_plate, plate_itself, plate_of
 from ...work.errors import AddonError
 
 if TYPE_CHECKING:
@@ -134,43 +133,19 @@ def renew() -> None:
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
     """Return the code values of an image, of the frame that an editor shows: float32, shape (H, W, 3 or 4), in [0, 1].
 
-    The bottom row comes first, and colors are not multiplied by alpha, which is left out where Blender does not take it
-    for coverage. Raise AddonError or CRFNetError if the image cannot be read, or does not hold encoded values.
+    They are those of an estimate and a bake. The bottom row comes first, and colors are not multiplied by alpha, which
+    is left out where Blender does not take it for coverage. Raise AddonError or CRFNetError if the image cannot be
+    read, or does not hold encoded values.
     """
-    width, height = image.size
-    # Where Blender decodes HEIC, its codes are others by a few; of a sequence, it has the frame that it read last.
-    if is_heif(image) or image.source == "SEQUENCE":
-        return _codes_of_file(image, user)
-    if not width * height:
-        raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
-    if image.source == "MOVIE":
-        codes = codes_of_frame(image, user.frame_current)
-        if codes is None:
-            raise AddonError(
-                f"{image.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as"
-                " an image sequence"
-            )
-        return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
-    alpha = alpha_mode(image)
-    # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
-    if image.is_float or alpha == "PREMUL":
-        return _codes_of_file(image, user)
-    pixels = pixels_of(image).reshape(height, width, image.channels)
-    if image.channels < 3:
-        return pixels[..., :1].repeat(3, axis=2)
-    return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
-
-
-def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
-    """Return the code values in the file of an image, packed or not, as `code_values` does."""
     frame_files, encoding_check = lazy_import.load(".work.frame_files"), lazy_import.load(".work.encoding_check")
-    plate = plate_of(image)
+    plate = plate_of(image, is_only_read=True)
     is_encoded = encoding_check.holds_encoded_values(
         plate, running_config(), is_forced=image.camera_response_settings.force
     )
     with frame_files.frame_reader(plate) as read:
         shown = Path(bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library))
-        (path,) = read(frame_files.FrameSequence((shown,))).paths
+        is_frame = image.source == "SEQUENCE"
+        (path,) = read(frame_files.FrameSequence((shown,)) if is_frame else frame_files.frames_of(plate)).paths
         frame = frame_files.read_plate_frame(path, plate.alpha_mode, is_encoded=is_encoded)
     channels = [frame.samples / np.float32(frame.largest)]
     if frame.alpha is not None and frame.is_coverage:

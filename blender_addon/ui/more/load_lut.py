@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Load the inverse of a plate's response from a LUT file, in place of an estimate."""
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -12,6 +13,7 @@ from ...work.errors import AddonError, expected_errors
 from .. import running
 from ..image_editor import comparison
 from ..operator_base import ChosenPlate, failed
+from ..plate_settings import exported_config
 from ..preferences import absolute
 
 if TYPE_CHECKING:
@@ -27,7 +29,6 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         "Use the response in a LUT file, which leads from code values to linear light, in place of an estimate. Nothing"
         " else changes until it is applied"
     )
-    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     filepath: bpy.props.StringProperty(
         name="File", description="The LUT file", subtype="FILE_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"}
@@ -41,6 +42,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         except expected_errors() as problem:
             return failed(self, problem)
         self.filter_glob = ";".join(f"*{suffix}" for suffix in suffixes)
+        self.filepath = self.filepath or _first_folder(plates.active_datablock(context))
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -65,6 +67,12 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         running.redraw_editors(context.window_manager)
         self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
         return {"FINISHED"}
+
+
+def _first_folder(datablock: plates.Datablock) -> str:
+    """Return the folder that the dialog shows at first: of what was exported for a plate last, or of its file."""
+    config = exported_config(datablock) if stored_estimate.is_stored(datablock) else ""
+    return f"{Path(config or bpy.path.abspath(datablock.filepath)).parent}{os.sep}"
 
 
 def _primaries(datablock: plates.Datablock) -> "Primaries":

@@ -3,7 +3,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -41,7 +41,6 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
         "Apply this response, with the settings of this plate, to other plates that the same camera took with the same"
         " settings. Selected nodes in the compositor are chosen at first"
     )
-    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     targets: bpy.props.CollectionProperty(type=CRF_OtherPlate, options={"HIDDEN", "SKIP_SAVE"})
 
@@ -147,15 +146,19 @@ def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> 
     datablock = plates.datablock_of_plate(job.plate)
     datablock.camera_response_settings.apply = source.camera_response_settings.apply
     if completed.is_applied:
-        remember_applied(datablock)
+        remember_applied(datablock, completed)
 
 
 def _what_was_done(source: plates.Datablock) -> str:
     """Return in words how the response was applied to the other plates."""
     if stored_estimate.verdict(source) == stored_estimate.DO_NOT_TRUST:
         return "it is stored only, because it is not to be trusted"
-    is_baked = source.camera_response_settings.apply == "BAKE"
-    return "bake each with its own Apply" if is_baked else "it is applied as nodes"
+    done = {
+        "NODES": "it is applied as Nodes",
+        "BAKE": "bake each with its own Apply",
+        "EXPORT": "its files are written",
+    }
+    return done[source.camera_response_settings.apply]
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OtherPlate, CRF_OT_copy_response))

@@ -57,9 +57,9 @@ def test_footage_stays_untrusted(tmp_path):
 def test_cameras_of_the_make_and_model_are_offered(estimate, tmp_path, monkeypatch):
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path))
     assert offered_cameras(estimate) == ()
-    for name, model in (("low", "ILCE-7M3"), ("high", "ilce-7m3"), ("other", "ILCE-7M2")):
-        CameraLibrary.of_user().save(camera(name, make="SONY", model=model))
-    assert [offer.name for offer in offered_cameras(estimate)] == ["high", "low"]
+    for name, model, stops in (("low", "ILCE-7M3", 0.1), ("high", "ilce-7m3", 0.2), ("other", "ILCE-7M2", 0.1)):
+        CameraLibrary.of_user().save(replace(camera(name, make="SONY", model=model), shape_stops=stops))
+    assert [offer.name for offer in offered_cameras(estimate)] == ["low", "high"]  # the most exact first
     developed = file_origin(FileMetadata(make="SONY", model="ILCE-7M3", raw_file="1.ARW"))
     for origins in ((), (file_origin(FileMetadata()),), (developed,)):
         assert offered_cameras(replace(estimate, origins=origins)) == ()
