@@ -39,6 +39,8 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     remember_settings(datablock, job)
     if not completed.is_applied:
         return "the plate was not changed"
+    if completed.files is not None:
+        stored_estimate.add_own_files(datablock, completed.files.files)
     look_group.update_look(context.scene, datablock, completed.estimate.curve, completed.stops)
     match completed.files:
         case None:

@@ -9,6 +9,7 @@ import bpy
 
 from .. import lazy_import
 from ..work.errors import AddonError
+from ..work import job
 from ..work.job import Plate
 from .packed_images import codes_of_frame, content_of, file_name, has_own_file, is_painted, shown_number
 
@@ -228,19 +229,9 @@ def name_of(datablock: Datablock) -> str:
 
 
 def file_state(datablock: Datablock) -> str:
-    """Return the name, the size in bytes and the time in seconds of a plate's file, a line each.
-
-    It is empty if the file is not found, or the plate has none of its own; of a sequence, one frame counts. The folder
-    does not count, so that a project can be moved.
-    """
-    if not datablock.filepath or not has_own_file(datablock):
-        return ""
-    path = _path(datablock)
-    try:
-        status = path.stat()
-    except OSError:
-        return ""
-    return f"{path.name}\n{status.st_size}\n{status.st_mtime:.0f}"
+    """Return the state of a plate's file, of a sequence of one frame; empty if it is not found or there is none."""
+    has_file = datablock.filepath and has_own_file(datablock)
+    return job.file_state(_path(datablock)) if has_file else ""
 
 
 def short_hash(datablock: Datablock) -> str:

@@ -9,11 +9,13 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import lazy_import
+from ..work.job import file_state
 from ..work.wording import PanelText, is_loaded, panel_text
 
 if TYPE_CHECKING:
@@ -35,12 +37,15 @@ EXPOSURE = "exposure"
 #: The entry with the origin, in words, of a response that was not estimated from its plate.
 ORIGIN = "origin"
 
-#: The entry with the state of the analyzed file, see `plates.file_state`; and the largest difference, in seconds,
+#: The entry with the state of the analyzed file, see `work.job.file_state`; and the largest difference, in seconds,
 #: between the times of a file and its copy: archives and some file systems round them.
 FILE_STATE, _SAME_TIME = "file_state", 2
 
 #: The entry with the stored cameras of the plate's make and model, in JSON: name and description of each.
 OFFERS = "offers"
+
+#: The entry with the files that the plate wrote, in JSON: `file_state` of each path.
+OWN_FILES = "own_files"
 
 #: The entry with the primaries of the plate, in JSON: the fields of `crfnet_core.colorimetry.Primaries`.
 PRIMARIES = "primaries"
@@ -57,7 +62,7 @@ def store(datablock: Datablock, estimate: ResponseEstimate) -> None:
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
     earlier = datablock[KEY].to_dict() if is_stored(datablock) else {}
-    file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS) if earlier.get(name)}
+    file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS, OWN_FILES) if earlier.get(name)}
     datablock.pop(KEY, None)  # Blender 4.5 does not replace one that reading `camera_response` has made
     datablock[KEY] = {"layout": LAYOUT, **panel_text(estimate)._asdict(), **entries, **file_entries}
 
@@ -121,6 +126,17 @@ def offers(datablock: Datablock) -> list[tuple[str, str]]:
 def set_offers(datablock: Datablock, cameras: Iterable[tuple[str, str]]) -> None:
     """Store, with an estimate, the cameras of the plate's make and model."""
     set_entry(datablock, OFFERS, json.dumps(list(cameras), ensure_ascii=False))
+
+
+def own_files(datablock: Datablock) -> dict[str, str]:
+    """Return the files that a plate wrote, as it left them: `file_state` of each path."""
+    return json.loads(datablock[KEY].get(OWN_FILES, "{}")) if is_stored(datablock) else {}
+
+
+def add_own_files(datablock: Datablock, files: Iterable[Path]) -> None:
+    """Remember files that a plate with an estimate has just written: it may replace them."""
+    states = own_files(datablock) | {str(path): file_state(path) for path in files}
+    set_entry(datablock, OWN_FILES, json.dumps(states, ensure_ascii=False))
 
 
 def curve_and_band(datablock: Datablock) -> Float64Array:

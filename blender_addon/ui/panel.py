@@ -123,8 +123,6 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
         state, state_icon = "Changed settings count once they are applied.", "INFO"
     button = layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon)
     button.anyway = not is_trusted
-    if has_been and settings.apply not in WITHOUT_FILES:
-        button.overwrite = True  # the files are its own
     draw_text(layout, state, letters, icon=state_icon)
     place = _place(context, datablock) if has_been else ""
     if settings.apply == "NODES":

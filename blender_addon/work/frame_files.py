@@ -61,7 +61,7 @@ def frames_of(plate: Plate) -> FrameSequence:
     if plate.numbered is not None:
         before, digits, after = plate.numbered
         name = plate.file.with_name(f"{before}{'#' * digits}{after}")  # for messages, as Blender writes it
-        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=name)
+        return pattern_frames(FramePattern(plate.file.parent, before, digits, after), name=name)
     return find_frames(plate.file)
 
 

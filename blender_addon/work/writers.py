@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The files of each way to apply a response, named as the `crfnet` command would name them."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +15,9 @@ from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
 from crfnet.output_files import OutputFiles, check_folder, plain_stem
+from crfnet.output_files import check_targets as check_files
 from crfnet.pipeline import OutputPlan, deliver
+from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import linear_targets
@@ -25,7 +28,7 @@ from crfnet_core.types import Progress
 from .encoding_check import is_said_encoded
 from .errors import AddonError
 from .frame_files import PlateFrames, frame_reader
-from .job import WITHOUT_FILES, ApplyMode, Job, Plate
+from .job import WITHOUT_FILES, ApplyMode, Job, Plate, file_state
 
 
 @dataclass(frozen=True)
@@ -83,12 +86,14 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
     else:
         files = output_files(job.plate, folder)
         targets = (*files.luts, files.config)
-    existing = [path for path in targets if path.exists()]
-    if existing and not job.output.overwrite:
-        more = f" (and {len(existing) - 1} more)" if existing[1:] else ""
-        raise AddonError(
-            f"{existing[0].name} exists already in {folder}{more}; tick Overwrite or choose another Folder"
-        )
+    check_files(folder, targets, overwrite=_may_replace(job, targets))
+
+
+def _may_replace(job: Job, targets: Sequence[Path]) -> bool:
+    """Return whether files may be replaced: on demand, or because the plate wrote all that exist, and nobody since."""
+    existing = [path for path in targets if os.path.lexists(path)]
+    is_own = all(job.output.own_files.get(str(path)) == file_state(path) for path in existing)
+    return job.output.overwrite or (bool(existing) and is_own)
 
 
 def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Baked:
@@ -97,7 +102,10 @@ def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress:
     oiio.attribute("debug", 0)  # else the builds of some distributions print what OpenEXR does not store, for each file
     targets = linear_targets(folder / baked_name(job.plate), sequence)
     options = PlateOptions(
-        depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
+        depth=job.output.depth,
+        exposure=stops,
+        overwrite=_may_replace(job, targets),
+        is_encoded=is_said_encoded(job),
     )
     plan = OutputPlan(replace(output_files(job.plate, folder), luts=(), linear=targets), options)
     primaries = PlatePrimaries(REC709, "as the plate is tagged")
@@ -115,9 +123,8 @@ def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exporte
     hint = job.plate.folder.name if job.plate.folder else ""
     look = Look(color_space(job.plate, files, stops, primaries), lut, hint)
     others = {path.name: lut for path in files.luts if path != files.lut}
-    derived = write_derived_config(
-        find_config(job.config), folder, [look], others=others, overwrite=job.output.overwrite
-    )
+    overwrite = _may_replace(job, (*files.luts, files.config))
+    derived = write_derived_config(find_config(job.config), folder, [look], others=others, overwrite=overwrite)
     return Exported(folder, derived.files, derived.path)
 
 
@@ -128,7 +135,8 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:
     """Return the plate's color space, with a file rule for all its files."""
-    space = PlateColorSpace.from_outputs(files, _photo(plate), exposure=stops, file_pattern=plate.pattern)
+    rule = FramePattern(plate.file.parent, *plate.numbered).rule if plate.numbered else ""
+    space = PlateColorSpace.from_outputs(files, _photo(plate), exposure=stops, file_pattern=rule)
     return replace(space, primaries=primaries)
 
 

@@ -12,7 +12,6 @@ from blender_addon.work.job import ApplyMode
 from crfnet.errors import ConfigError, PlateError
 from crfnet.luts.files import WRITERS, read_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.plates.frames import find_frames
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
@@ -24,7 +23,7 @@ LUT = inverse_response_lut(CURVE)
 
 
 def write(job, progress=None, stops=0.0):
-    return writers.write(job, LUT, stops, lambda: find_frames(job.plate.file), progress)
+    return writers.write(job, LUT, stops, lambda: frames_of(job.plate), progress)
 
 
 def cancelled_after(steps):
@@ -47,7 +46,7 @@ def test_the_name_before_the_frame_number_may_look_like_a_placeholder(make_job, 
     files = [write_image(tmp_path / f"{before}{number:04d}.png", np.roll(codes, number, 0)) for number in (1, 2, 4)]
     write_image(tmp_path / "shot.1-20007.png", codes)
     job = make_job(files[0], is_sequence=True)
-    baked = writers.write(job, LUT, 0.0, lambda: frames_of(job.plate))
+    baked = write(job)
     assert frames_of(job.plate).paths == tuple(files)
     assert frames_of(job.plate).numbers == (1, 2, 4)
     assert [path.name[-9:] for path in baked.files] == [".0001.exr", ".0002.exr", ".0004.exr"]
@@ -134,7 +133,7 @@ def test_an_export_is_built_on_the_running_config_which_stays(make_job, running_
 def test_the_file_rule_is_for_every_frame(make_job, sequence_file, tmp_path):
     job = make_job(sequence_file, is_sequence=True)
     space = writers.color_space(job.plate, writers.output_files(job.plate, tmp_path), 1.5)
-    assert (space.name, space.file_patterns, space.exposure) == ("CRF shot", ("shot.*.png",), 1.5)
+    assert (space.name, space.file_patterns, space.exposure) == ("CRF shot", ("shot.#.png",), 1.5)
 
 
 @pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
