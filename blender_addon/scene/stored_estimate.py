@@ -25,30 +25,19 @@ if TYPE_CHECKING:
 
     from .plates import Datablock
 
-#: The name of the custom property.
-KEY = "camera_response"
+#: The name of the custom property, and the version of its entries.
+KEY, LAYOUT = "camera_response", 3
 
-#: The version of its entries.
-LAYOUT = 3
+# Entries that are set later:
+EXPOSURE = "exposure"  # that was applied, in stops
+ORIGIN = "origin"  # in words, of a response that was not estimated from its plate
+FILE_STATE = "file_state"  # of the analyzed file: `work.job.file_state`
+OFFERS = "offers"  # in JSON, the stored cameras of the plate's make and model: name and description of each
+OWN_FILES = "own_files"  # in JSON, the files that the plate wrote: `work.job.file_state` of each path
+PRIMARIES = "primaries"  # in JSON, of the plate: the fields of `crfnet_core.colorimetry.Primaries`
 
-#: The entry with the exposure that was applied, in stops; it is set later.
-EXPOSURE = "exposure"
-
-#: The entry with the origin, in words, of a response that was not estimated from its plate.
-ORIGIN = "origin"
-
-#: The entry with the state of the analyzed file, see `work.job.file_state`; and the largest difference, in seconds,
-#: between the times of a file and its copy: archives and some file systems round them.
-FILE_STATE, _SAME_TIME = "file_state", 2
-
-#: The entry with the stored cameras of the plate's make and model, in JSON: name and description of each.
-OFFERS = "offers"
-
-#: The entry with the files that the plate wrote, in JSON: `file_state` of each path.
-OWN_FILES = "own_files"
-
-#: The entry with the primaries of the plate, in JSON: the fields of `crfnet_core.colorimetry.Primaries`.
-PRIMARIES = "primaries"
+#: The largest difference, in seconds, between the times of a file and its copy: archives and file systems round them.
+_SAME_TIME = 2
 
 #: The verdict of an estimate that is not to be trusted, as in `crfnet_core.posterior.Verdict`, which the panel does
 #: not import.
@@ -121,11 +110,6 @@ def camera(datablock: Datablock) -> str:
 def offers(datablock: Datablock) -> list[tuple[str, str]]:
     """Return the stored cameras of the plate's make and model: name and description of each."""
     return [(name, words) for name, words in json.loads(datablock[KEY].get(OFFERS, "[]"))]
-
-
-def set_offers(datablock: Datablock, cameras: Iterable[tuple[str, str]]) -> None:
-    """Store, with an estimate, the cameras of the plate's make and model."""
-    set_entry(datablock, OFFERS, json.dumps(list(cameras), ensure_ascii=False))
 
 
 def own_files(datablock: Datablock) -> dict[str, str]:
@@ -202,8 +186,5 @@ def set_primaries(datablock: Datablock, primaries: Primaries) -> None:
 
 
 def fingerprint(datablock: Datablock) -> str:
-    """Return a text that differs between different estimates."""
-    entries = datablock[KEY]
-    if not has_verdict(datablock):
-        return f"{entries['model']} {hash(tuple(entries['brightness'].to_list()))}"
-    return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"
+    """Return a text that differs between responses and their bands."""
+    return f"{datablock[KEY]['model']} {hash(curve_and_band(datablock).tobytes())}"

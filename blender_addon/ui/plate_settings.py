@@ -106,7 +106,9 @@ class PlateChoices:
         **FOLDER,
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Samples of the baked EXR files", items=DEPTHS)
-    overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files that are not of this plate; is asked anew each time")
+    overwrite: bpy.props.BoolProperty(
+        name="Overwrite", description="Replace files that are not of this plate; is asked anew each time"
+    )
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
         description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear."

@@ -76,12 +76,8 @@ class Plate:
         if number is None:
             return cls(name=path.stem, file=path, numbered=None, **fields)
         before, digits, after = number.groups()
-        return cls(
-            name=(before.rstrip("._- ") + after) or Path(datablock_name).stem,
-            file=path,
-            numbered=(before, len(digits), after + path.suffix),
-            **fields,
-        )
+        name = (before.rstrip("._- ") + after) or Path(datablock_name).stem
+        return cls(name=name, file=path, numbered=(before, len(digits), after + path.suffix), **fields)
 
 
 @dataclass(frozen=True, kw_only=True)

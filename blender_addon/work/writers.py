@@ -14,7 +14,7 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
-from crfnet.output_files import OutputFiles, check_folder, plain_stem
+from crfnet.output_files import OutputFiles, plain_stem
 from crfnet.output_files import check_targets as check_files
 from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frame_pattern import FramePattern
@@ -32,23 +32,11 @@ from .job import WITHOUT_FILES, ApplyMode, Job, Plate, file_state
 
 
 @dataclass(frozen=True)
-class Baked:
-    """Linear EXR files in the order of their frames, of a sequence or a single image."""
+class Written:
+    """Linear EXR files in the order of their frames, or LUT files and a config."""
 
     files: tuple[Path, ...]
-    is_sequence: bool
-
-
-@dataclass(frozen=True)
-class Exported:
-    """LUT files and a config, the folder that they are in, and the config."""
-
-    folder: Path
-    files: tuple[Path, ...]
-    config: Path
-
-
-Written = Baked | Exported
+    config: Path | None = None  # of an export
 
 
 def write(
@@ -79,13 +67,10 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
             f"{job.plate.name}: movies are not baked; choose Nodes and render, or open the movie's frames as an image"
             " sequence"
         )
-    folder = _folder(job)
-    check_folder(folder)
+    folder, files = _folder(job), output_files(job.plate, _folder(job))
+    targets = (*files.luts, files.config)
     if job.output.mode is ApplyMode.BAKE:
         targets = linear_targets(folder / baked_name(job.plate), sequence())
-    else:
-        files = output_files(job.plate, folder)
-        targets = (*files.luts, files.config)
     check_files(folder, targets, overwrite=_may_replace(job, targets))
 
 
@@ -96,27 +81,23 @@ def _may_replace(job: Job, targets: Sequence[Path]) -> bool:
     return job.output.overwrite or (bool(existing) and is_own)
 
 
-def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Baked:
+def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Written:
     """Write the linear plate, or all its frames."""
     folder = _folder(job)
     oiio.attribute("debug", 0)  # else the builds of some distributions print what OpenEXR does not store, for each file
     targets = linear_targets(folder / baked_name(job.plate), sequence)
-    options = PlateOptions(
-        depth=job.output.depth,
-        exposure=stops,
-        overwrite=_may_replace(job, targets),
-        is_encoded=is_said_encoded(job),
-    )
+    is_encoded, overwrite = is_said_encoded(job), _may_replace(job, targets)
+    options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=overwrite, is_encoded=is_encoded)
     plan = OutputPlan(replace(output_files(job.plate, folder), luts=(), linear=targets), options)
     primaries = PlatePrimaries(REC709, "as the plate is tagged")
     light = PlateLight(lut, stops, primaries, linear_space(primaries))
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=job.plate.alpha_mode)
     with frame_reader(job.plate) as read:
         deliver(plan, light, [read(frames)], progress=progress)
-    return Baked(targets, is_sequence=job.plate.numbered is not None)
+    return Written(targets)
 
 
-def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
+def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Written:
     """Write the LUT in three formats, and the config that Blender runs on with the plate's color space added."""
     folder = _folder(job)
     files = output_files(job.plate, folder)
@@ -125,7 +106,7 @@ def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exporte
     others = {path.name: lut for path in files.luts if path != files.lut}
     overwrite = _may_replace(job, (*files.luts, files.config))
     derived = write_derived_config(find_config(job.config), folder, [look], others=others, overwrite=overwrite)
-    return Exported(folder, derived.files, derived.path)
+    return Written(derived.files, derived.path)
 
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from blender_addon.work import frame_files, writers
+from blender_addon.work import frame_files
 from blender_addon.work import run as run_module
 from blender_addon.work.errors import CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
@@ -58,7 +58,7 @@ def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, m
     completed = run(make_job(sequence_file, is_sequence=True, mode=ApplyMode.EXPORT, stored=stored))
     assert completed.estimate is stored
     assert completed.frames == ()
-    assert isinstance(completed.files, writers.Exported)
+    assert completed.files.config.name == "config.ocio"
 
 
 def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, tmp_path, codes, estimate, monkeypatch):

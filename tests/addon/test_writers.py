@@ -36,7 +36,7 @@ def cancelled_after(steps):
 
 def test_a_baked_plate_is_linear(make_job, tmp_path, codes):
     baked = write(make_job(), stops=1)
-    assert baked == writers.Baked((tmp_path / "out" / "plate_linear.exr",), is_sequence=False)
+    assert baked == writers.Written((tmp_path / "out" / "plate_linear.exr",))
     assert np.abs(read_image(baked.files[0]) - 2 * CURVE.inverse(codes / 255)).max() < 1e-5
 
 
@@ -114,11 +114,12 @@ def test_a_frame_that_fails_takes_the_others_back(make_job, sequence_file, tmp_p
 
 def test_an_export_is_that_of_the_command(make_job, tmp_path):
     exported = write(make_job(mode=ApplyMode.EXPORT))
-    assert exported.folder == tmp_path / "out"
-    assert set(listed(exported.folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
-    assert sorted(exported.files) == sorted(exported.folder.iterdir())
+    folder = exported.config.parent
+    assert folder == tmp_path / "out"
+    assert set(listed(folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
+    assert sorted(exported.files) == sorted(folder.iterdir())
     for suffix in WRITERS:
-        np.testing.assert_array_equal(read_lut(exported.folder / f"plate{suffix}").values, LUT.values)
+        np.testing.assert_array_equal(read_lut(folder / f"plate{suffix}").values, LUT.values)
 
 
 def test_an_export_is_built_on_the_running_config_which_stays(make_job, running_config):

@@ -21,28 +21,20 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float64Array
 
-#: The steps of the table that Blender makes of a curve; between them it is linear.
-STEPS = 256
+STEPS = 256  # of the table that Blender makes of a curve; between them it is linear
+WHITE, DEEP_WHITE = 255, 65535  # the largest codes of 8 and 16 bits
+DARK = 7  # the last code of 8 bits that is too dark for a limit in stops
 
-#: The largest code of 8 bits, and the last one that is too dark for a limit in stops.
-WHITE, DARK = 255, 7 / 255
-
-#: The largest code of 16 bits; and the brightness of each code of 9 to 16 bits above `DARK`, in these.
-DEEP_WHITE = 65535
+#: Each code of 9 to 16 bits above `DARK`, in codes of 16 bits.
 _DEEP = np.unique(np.concatenate([np.linspace(0, DEEP_WHITE, 2**bits) for bits in range(9, 17)]))
-_DEEP = _DEEP[_DEEP > DARK * DEEP_WHITE]
+_DEEP = _DEEP[_DEEP > DARK * DEEP_WHITE / WHITE]
 
 #: Largest error of the curves of a deep plate, in stops: with that of half floats on the GPU, it stays below 0.001.
 TOLERANCE = 3e-4
+_TRIED = 96  # lengths for a part
 
-#: The lengths that are tried for a part.
-_TRIED = 96
-
-#: The start and the end of the inputs of one node.
-Part: TypeAlias = tuple[float, float]
-
-#: The part of a plate of 8 bits, whose table has a step at every code.
-EIGHT_BITS: Part = (0, (WHITE + 1) / WHITE)
+Part: TypeAlias = tuple[float, float]  # the start and the end of the inputs of one node
+EIGHT_BITS: Part = (0, (WHITE + 1) / WHITE)  # of a plate of 8 bits: its table has a step at every code
 
 
 def add_curves(

@@ -11,14 +11,10 @@ import bpy
 
 from ..plates import NODE_TREES, SHADER, SHOWN, Datablock, datablock_of_node, shown_by_node
 
-#: The custom property of the add-on's node groups; its value is the plate's image or clip.
-PLATE = "camera_response_of"
-
-#: The same of the node groups "Camera Look".
-LOOK = "camera_response_look_of"
-
-#: The custom property of a shader's node group with the name of the working space that it converts to.
-WORKING_SPACE = "camera_response_working_space"
+# Custom properties of the add-on's node groups:
+PLATE = "camera_response_of"  # the plate's image or clip
+LOOK = "camera_response_look_of"  # the same, of a "Camera Look"
+WORKING_SPACE = "camera_response_working_space"  # of a shader's, the name of the working space that it converts to
 
 #: The types of nodes that may show an image or clip, or hold a node group.
 _KEY_TYPES = ("GROUP", *SHOWN)

@@ -28,17 +28,10 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array, Float64Array
 
-#: The custom property of these images with the key of their pixels.
-_KEY = "camera_response_key"
-
-#: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
-_LARGEST = 65535
-
-#: Rows that are converted at a time: few enough to stay in the processor's cache.
-_ROWS = 16
-
-#: Seconds after the last change of the exposure or frame until linear plates show it: no slider or player waits.
-_PAUSE = 0.2
+_KEY = "camera_response_key"  # the custom property of these images with the key of their pixels
+_LARGEST = 65535  # code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits
+_ROWS = 16  # that are converted at a time: few enough to stay in the processor's cache
+_PAUSE = 0.2  # seconds after a change of exposure or frame until linear plates show it: no slider or player waits
 
 
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
@@ -136,7 +129,7 @@ def renew() -> None:
 
 
 def _renew_in(space: bpy.types.SpaceImageEditor) -> None:
-    """Show the present linear plate in an editor; of a missing frame an empty picture, until the next one that exists."""
+    """Show the present linear plate in an editor; of a missing frame an empty picture, until one that exists."""
     linear = space.image
     end(space)
     try:
@@ -174,8 +167,7 @@ def update_frame(user: bpy.types.ImageUser) -> None:
 
 def _key(plate: bpy.types.Image, stops: float) -> str:
     """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
-    response = hash(stored_estimate.curve_and_band(plate).tobytes())
-    details = (response, stops, alpha_mode(plate), stored_estimate.primaries(plate))
+    details = (stored_estimate.fingerprint(plate), stops, alpha_mode(plate), stored_estimate.primaries(plate))
     return f"{state} {details}" if (state := file_state(plate)) and plate.source == "FILE" else ""
 
 

@@ -20,8 +20,7 @@ from . import comparison
 if TYPE_CHECKING:
     from crfnet_core.types import Float32Array
 
-#: Half the side of the square of pixels whose mean is picked.
-REACH = 2
+REACH = 2  # half the side of the square of pixels whose mean is picked
 
 #: The entry of the key in Blender's keymaps, with its keymap, while it is there.
 _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
