@@ -17,14 +17,10 @@ SHOTS = Path("/shots")
         ("shot7.tif", "shot", ("shot", 1, ".tif")),
         ("sh010_v2.0099_main.png", "sh010_v2_main", ("sh010_v2.", 4, "_main.png")),
         ("0042.dpx", "Beach", ("", 4, ".dpx")),
+        ("beach.png", "beach", None),
     ],
 )
 def test_the_last_number_of_a_sequences_file_is_the_frame_number(file, name, numbered):
     plate = plate_from_file(SHOTS / file, is_sequence=True, name="Beach.001")
     assert (plate.name, plate.file, plate.numbered) == (name, SHOTS / file, numbered)
-
-
-@pytest.mark.parametrize(("file", "is_sequence"), [("IMG_1234.jpg", False), ("beach.png", True)])
-def test_a_file_that_is_no_frame_stands_for_itself(file, is_sequence):
-    plate = plate_from_file(SHOTS / file, is_sequence=is_sequence)
-    assert (plate.name, plate.file, plate.numbered) == (Path(file).stem, SHOTS / file, None)
+    assert plate_from_file(SHOTS / "IMG_1234.jpg").numbered is None

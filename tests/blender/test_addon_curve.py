@@ -60,7 +60,6 @@ def test_the_light_of_all_codes_above_7(decoded, curves, largest):
     brightness = np.arange(-(-FIRST * largest // 255), largest + 1) / largest
     bits = 8 if largest == 255 else 16
     errors = [np.abs(np.log2(decoded(curve, brightness, bits) / curve.inverse(brightness))).max() for curve in curves()]
-    assert len(errors) > 2
     assert max(errors) < STOPS
 
 
