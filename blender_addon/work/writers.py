@@ -71,14 +71,18 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
     targets = (*files.luts, files.config)
     if job.output.mode is ApplyMode.BAKE:
         targets = linear_targets(folder / baked_name(job.plate), sequence())
-    check_files(folder, targets, overwrite=_may_replace(job, targets))
+    check_files(folder, [path for path in targets if not _is_own(job, path)], overwrite=job.output.overwrite)
+
+
+def _is_own(job: Job, path: Path) -> bool:
+    """Return whether the plate wrote a file, and nobody since."""
+    return job.output.own_files.get(str(path)) == file_state(path)
 
 
 def _may_replace(job: Job, targets: Sequence[Path]) -> bool:
-    """Return whether files may be replaced: on demand, or because the plate wrote all that exist, and nobody since."""
+    """Return whether files may be replaced: on demand, or because all that exist are the plate's own."""
     existing = [path for path in targets if os.path.lexists(path)]
-    is_own = all(job.output.own_files.get(str(path)) == file_state(path) for path in existing)
-    return job.output.overwrite or (bool(existing) and is_own)
+    return job.output.overwrite or (bool(existing) and all(_is_own(job, path) for path in existing))
 
 
 def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Written:
