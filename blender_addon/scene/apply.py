@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Change Blender's data as a completed job asks: after everything that can fail, and in Blender's thread only."""
 
+import json
+from pathlib import Path
+
 import bpy
 
 from crfnet.options import device_name
@@ -9,7 +12,6 @@ from ..work.errors import AddonError
 from ..work.job import ApplyMode, Job
 from ..work.run import CompletedJob
 from ..work.wording import shortened
-from ..work.writers import Baked, Exported
 from . import stored_estimate
 from .code_values import code_values
 from .nodes import compositor, look_group, plate_group
@@ -33,20 +35,20 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     stored_estimate.set_primaries(datablock, completed.primaries)
     if job.estimation.stored is None:
         stored_estimate.set_entry(datablock, stored_estimate.FILE_STATE, job.plate.file_state)
-        stored_estimate.set_offers(datablock, completed.offers)
+        stored_estimate.set_entry(datablock, stored_estimate.OFFERS, json.dumps(completed.offers, ensure_ascii=False))
     if job.estimation.origin:
         stored_estimate.set_entry(datablock, stored_estimate.ORIGIN, job.estimation.origin)
     remember_settings(datablock, job)
     if not completed.is_applied:
         return "the plate was not changed"
     look_group.update_look(context.scene, datablock, completed.estimate.curve, completed.stops)
-    match completed.files:
-        case None:
-            return _insert_nodes(context, datablock, completed)
-        case Baked() as baked:
-            return _show_baked(context, datablock, baked, completed.frames)
-        case Exported() as exported:
-            return f"{len(exported.files)} files are in {exported.folder}; start Blender with OCIO={exported.config}"
+    if completed.files is None:
+        return _insert_nodes(context, datablock, completed)
+    files, config = completed.files.files, completed.files.config
+    stored_estimate.add_own_files(datablock, files)
+    if config is not None:
+        return f"{len(files)} files are in {config.parent}; start Blender with OCIO={config}"
+    return _show_baked(context, datablock, files, completed.frames)
 
 
 def remember_settings(datablock: Datablock, job: Job) -> None:
@@ -89,14 +91,13 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
     return f"its nodes linearize it in the compositor; elsewhere it looks as before{hint}"
 
 
-def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:
+def _show_baked(
+    context: bpy.types.Context, datablock: Datablock, files: tuple[Path, ...], frames: tuple[int, ...]
+) -> str:
     """Load the linear files, and show them in the editor that shows the plate, with its timing."""
     timing = compositor.timing_of(context, datablock, frames)
-    linear = (
-        _linear_clip(datablock, baked)
-        if isinstance(datablock, bpy.types.MovieClip)
-        else _linear_image(datablock, baked)
-    )
+    load = _linear_clip if isinstance(datablock, bpy.types.MovieClip) else _linear_image
+    linear = load(datablock, files[0])
     linear[BAKED_FROM] = datablock.name
     space = context.space_data
     if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
@@ -105,13 +106,13 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
             timing.set_on(space.image_user)
     if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
         space.clip = linear
-    return f"the linear plate is written to {shortened(str(baked.files[0].parent))} and loaded"
+    return f"the linear plate is written to {shortened(str(files[0].parent))} and loaded"
 
 
-def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
+def _linear_image(plate: bpy.types.Image, file: Path) -> bpy.types.Image:
     """Return the linear plate as an image in linear Rec.709; one that is loaded already is read again."""
-    image = bpy.data.images.load(str(baked.files[0]), check_existing=True)
-    image.source = "SEQUENCE" if baked.is_sequence else "FILE"
+    image = bpy.data.images.load(str(file), check_existing=True)
+    image.source = plate.source if plate.source == "SEQUENCE" else "FILE"
     image.filepath = _path_like(plate, image.filepath)
     image.reload()
     image.alpha_mode = "CHANNEL_PACKED" if alpha_mode(plate) == "CHANNEL_PACKED" else "PREMUL"  # as OpenEXR demands
@@ -119,19 +120,18 @@ def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
     return image
 
 
-def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieClip:
+def _linear_clip(plate: bpy.types.MovieClip, file: Path) -> bpy.types.MovieClip:
     """Return the linear plate as a clip in linear Rec.709, with the plate's timing, tracks and camera.
 
     A clip of these files that is loaded already keeps its own tracks and camera.
     """
-    first = str(baked.files[0])
-    clip = next((clip for clip in bpy.data.movieclips if bpy.path.abspath(clip.filepath) == first), None)
+    clip = next((clip for clip in bpy.data.movieclips if bpy.path.abspath(clip.filepath) == str(file)), None)
     if clip is None:
         clip = plate.copy()
-        clip.name = baked.files[0].name
+        clip.name = file.name
         stored_estimate.remove(clip)
         clip.use_proxy = False  # its proxies show the plate
-    clip.filepath = _path_like(plate, first)  # reads the files again
+    clip.filepath = _path_like(plate, str(file))  # reads the files again
     clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset
     clip.colorspace_settings.name = plate_group.linear_rec709()
     return clip

@@ -18,8 +18,7 @@ from .color_management import data_space
 from .packed_images import has_own_file, is_painted, pixels_of
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, mark, short_hash
 
-#: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
-_READ = "camera_response_read"
+_READ = "camera_response_read"  # the custom property of a copy with the `file_state` of the plate that it has read
 
 
 def code_values(plate: Datablock) -> Datablock:

@@ -8,11 +8,8 @@ import bpy
 
 from .. import lazy_import
 
-#: The file name by which Blender looks for a config.
-CONFIG_NAME = "config.ocio"
-
-#: Environment variables that name Blender's config; Blender 4.5 knows the first only.
-CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
+CONFIG_NAME = "config.ocio"  # by which Blender looks for a config
+CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")  # that name Blender's config; Blender 4.5 knows the first only
 
 #: The view transforms that undo the encoding of the display, in Blender's config and in those of ACES; and all, of
 #: common configs, that do not darken a plate, or are not made for pictures.

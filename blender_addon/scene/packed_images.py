@@ -14,7 +14,6 @@ from ..work.errors import AddonError
 if TYPE_CHECKING:
     from crfnet_core.types import Float32Array, Uint8Array
 
-
 #: The attribute of an editor that holds the number of the frame it shows.
 _USERS = {"IMAGE_EDITOR": "image_user", "CLIP_EDITOR": "clip_user"}
 
@@ -35,16 +34,11 @@ def file_name(image: bpy.types.Image) -> Path:
     return Path(packed or f"{Path(bpy.path.clean_name(image.name)).stem}.png")
 
 
-def content_of(image: bpy.types.Image) -> bytes | Uint8Array:
-    """Return the packed file, or the code values, shape (H, W, 3 or 4), of a painted image of 8 bits.
-
-    Its pixels are code values, whatever its color space. Raise AddonError if the image has no pixels.
-    """
-    return codes_of_pixels(image) if is_painted(image) else image.packed_file.data
-
-
 def codes_of_pixels(image: bpy.types.Image) -> Uint8Array:
-    """Return the code values of an 8-bit image, shape (H, W, 3 or 4), the top row first."""
+    """Return the code values of an 8-bit image, shape (H, W, 3 or 4), the top row first, whatever its color space.
+
+    Raise AddonError if the image has no pixels.
+    """
     width, height = image.size
     if not width * height or not len(image.pixels):
         raise AddonError(f"{image.name}: has no pixels; open a photograph")

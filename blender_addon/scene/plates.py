@@ -8,18 +8,16 @@ from typing import Any, TypeAlias
 import bpy
 
 from .. import lazy_import
+from ..work import job
 from ..work.errors import AddonError
 from ..work.job import Plate
-from .packed_images import codes_of_frame, content_of, file_name, has_own_file, is_painted, shown_number
+from .packed_images import codes_of_frame, codes_of_pixels, file_name, has_own_file, is_painted, shown_number
 
-#: The editors that have the panel.
-EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
+EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")  # that have the panel
+COMPOSITOR, SHADER = NODE_TREES = ("CompositorNodeTree", "ShaderNodeTree")  # that show plates
 
 #: Suffixes of photographs that the estimator reads and Blender does not, or only some versions of it.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
-
-#: The node trees that show plates.
-COMPOSITOR, SHADER = NODE_TREES = ("CompositorNodeTree", "ShaderNodeTree")
 
 #: The panel's request in each editor while there is no plate.
 OPEN_A_PLATE = {
@@ -28,22 +26,15 @@ OPEN_A_PLATE = {
     "NODE_EDITOR": "Select a node that shows an image or movie clip",
 }
 
-#: The custom property of a copy whose pixels are code values, see `code_values`; its value is the plate.
-CODE_VALUES_OF = "camera_response_code_values_of"
-
-#: The custom property that marks a linear plate that is only shown for comparison; its value is the plate.
-COMPARED_PLATE = "camera_response_plate"
-
-#: The custom property of a linear plate that was baked; its value is the name of the plate.
-BAKED_FROM = "camera_response_baked_from"
+# Custom properties of data that was made for a plate, with the plate as their value:
+CODE_VALUES_OF = "camera_response_code_values_of"  # a copy whose pixels are code values, see `code_values`
+COMPARED_PLATE = "camera_response_plate"  # a linear plate that is only shown for comparison
+BAKED_FROM = "camera_response_baked_from"  # a linear plate that was baked: only the plate's name
+_HASH = "camera_response_hash"  # the first `short_hash` of a plate; the plate has it, too
 
 #: The nodes that show an image or clip, by their type: its attribute.
 SHOWN = {"IMAGE": "image", "MOVIECLIP": "clip", "TEX_IMAGE": "image", "TEX_ENVIRONMENT": "image"}
 
-#: The custom property with the first `short_hash` of a plate, on the plate and on the data that was made for it.
-_HASH = "camera_response_hash"
-
-#: What a plate is in Blender's data.
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
@@ -148,7 +139,7 @@ def obstacle(datablock: Datablock) -> str:
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
-    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
+    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock)
 
 
 def why_unchangeable(datablock: Datablock) -> str:
@@ -174,8 +165,10 @@ _OBSTACLES = {
 
 
 def _obstacle_in_blender(datablock: Datablock) -> str:
-    """Return why an image that was generated in Blender has no response; an empty text for any other."""
+    """Return why an image that was generated, or painted on, in Blender has no response; else an empty text."""
     if datablock.source != "GENERATED":
+        if getattr(datablock, "is_dirty", False):
+            return f"{datablock.name} has unsaved changes: save, pack or reload it in the Image menu first"
         return ""
     if datablock.is_float:
         return "Float images made in Blender hold linear values, which have no camera response: open a photograph"
@@ -184,13 +177,6 @@ def _obstacle_in_blender(datablock: Datablock) -> str:
     if datablock.packed_file:
         return f"{datablock.name} shows what Blender generates, not its packed file: set Source to Single Image"
     return "Blank images and test grids have no camera response: open a photograph"
-
-
-def _obstacle_unsaved(datablock: Datablock) -> str:
-    """Return that an image was painted on since its file was read or packed; an empty text for any other."""
-    if not is_painted(datablock) and getattr(datablock, "is_dirty", False):
-        return f"{datablock.name} has unsaved changes: save, pack or reload it in the Image menu first"
-    return ""
 
 
 def plate_of(datablock: Datablock, *, is_only_read: bool = False) -> Plate:
@@ -202,23 +188,17 @@ def plate_of(datablock: Datablock, *, is_only_read: bool = False) -> Plate:
     if (problem := obstacle(datablock)) and not (is_only_read and problem == why_unchangeable(datablock)):
         raise AddonError(problem)
     if not has_own_file(datablock):
-        name, content = file_name(datablock), content_of(datablock)
+        name = file_name(datablock)
+        content = codes_of_pixels(datablock) if is_painted(datablock) else datablock.packed_file.data
         return _plate(datablock, name, folder=None, has_metadata=isinstance(content, bytes), content=content)
     path = _path(datablock)
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
         raise AddonError(f"{datablock.filepath or datablock.name}: does not exist; find it with File, External Data")
     if datablock.source != "MOVIE":
         return _plate(datablock, path, folder=path.parent)
-    number = shown_number(datablock)
-    return _plate(
-        datablock,
-        path,
-        folder=path.parent,
-        has_metadata=False,
-        content=codes_of_frame(datablock, number),
-        shown_frame=number,
-        frame_count=max(1, datablock.frame_duration),
-    )
+    number, count = shown_number(datablock), max(1, datablock.frame_duration)
+    frame = {"content": codes_of_frame(datablock, number), "shown_frame": number, "frame_count": count}
+    return _plate(datablock, path, folder=path.parent, has_metadata=False, **frame)
 
 
 def name_of(datablock: Datablock) -> str:
@@ -228,19 +208,9 @@ def name_of(datablock: Datablock) -> str:
 
 
 def file_state(datablock: Datablock) -> str:
-    """Return the name, the size in bytes and the time in seconds of a plate's file, a line each.
-
-    It is empty if the file is not found, or the plate has none of its own; of a sequence, one frame counts. The folder
-    does not count, so that a project can be moved.
-    """
-    if not datablock.filepath or not has_own_file(datablock):
-        return ""
-    path = _path(datablock)
-    try:
-        status = path.stat()
-    except OSError:
-        return ""
-    return f"{path.name}\n{status.st_size}\n{status.st_mtime:.0f}"
+    """Return the state of a plate's file, of a sequence of one frame; empty if it is not found or there is none."""
+    has_file = datablock.filepath and has_own_file(datablock)
+    return job.file_state(_path(datablock)) if has_file else ""
 
 
 def short_hash(datablock: Datablock) -> str:

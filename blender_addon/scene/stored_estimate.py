@@ -9,11 +9,13 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import lazy_import
+from ..work.job import file_state
 from ..work.wording import PanelText, is_loaded, panel_text
 
 if TYPE_CHECKING:
@@ -23,27 +25,19 @@ if TYPE_CHECKING:
 
     from .plates import Datablock
 
-#: The name of the custom property.
-KEY = "camera_response"
+#: The name of the custom property, and the version of its entries.
+KEY, LAYOUT = "camera_response", 3
 
-#: The version of its entries.
-LAYOUT = 3
+# Entries that are set later:
+EXPOSURE = "exposure"  # that was applied, in stops
+ORIGIN = "origin"  # in words, of a response that was not estimated from its plate
+FILE_STATE = "file_state"  # of the analyzed file: `work.job.file_state`
+OFFERS = "offers"  # in JSON, the stored cameras of the plate's make and model: name and description of each
+OWN_FILES = "own_files"  # in JSON, the files that the plate wrote: `work.job.file_state` of each path
+PRIMARIES = "primaries"  # in JSON, of the plate: the fields of `crfnet_core.colorimetry.Primaries`
 
-#: The entry with the exposure that was applied, in stops; it is set later.
-EXPOSURE = "exposure"
-
-#: The entry with the origin, in words, of a response that was not estimated from its plate.
-ORIGIN = "origin"
-
-#: The entry with the state of the analyzed file, see `plates.file_state`; and the largest difference, in seconds,
-#: between the times of a file and its copy: archives and some file systems round them.
-FILE_STATE, _SAME_TIME = "file_state", 2
-
-#: The entry with the stored cameras of the plate's make and model, in JSON: name and description of each.
-OFFERS = "offers"
-
-#: The entry with the primaries of the plate, in JSON: the fields of `crfnet_core.colorimetry.Primaries`.
-PRIMARIES = "primaries"
+#: The largest difference, in seconds, between the times of a file and its copy: archives and file systems round them.
+_SAME_TIME = 2
 
 #: The verdict of an estimate that is not to be trusted, as in `crfnet_core.posterior.Verdict`, which the panel does
 #: not import.
@@ -57,7 +51,7 @@ def store(datablock: Datablock, estimate: ResponseEstimate) -> None:
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
     earlier = datablock[KEY].to_dict() if is_stored(datablock) else {}
-    file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS) if earlier.get(name)}
+    file_entries = {name: earlier[name] for name in (FILE_STATE, OFFERS, OWN_FILES) if earlier.get(name)}
     datablock.pop(KEY, None)  # Blender 4.5 does not replace one that reading `camera_response` has made
     datablock[KEY] = {"layout": LAYOUT, **panel_text(estimate)._asdict(), **entries, **file_entries}
 
@@ -112,9 +106,15 @@ def offers(datablock: Datablock) -> list[tuple[str, str]]:
     return [(name, words) for name, words in json.loads(datablock[KEY].get(OFFERS, "[]"))]
 
 
-def set_offers(datablock: Datablock, cameras: Iterable[tuple[str, str]]) -> None:
-    """Store, with an estimate, the cameras of the plate's make and model."""
-    set_entry(datablock, OFFERS, json.dumps(list(cameras), ensure_ascii=False))
+def own_files(datablock: Datablock) -> dict[str, str]:
+    """Return the files that a plate wrote, as it left them: `file_state` of each path."""
+    return json.loads(datablock[KEY].get(OWN_FILES, "{}")) if is_stored(datablock) else {}
+
+
+def add_own_files(datablock: Datablock, files: Iterable[Path]) -> None:
+    """Remember files that a plate with an estimate has just written: it may replace them."""
+    states = own_files(datablock) | {str(path): file_state(path) for path in files}
+    set_entry(datablock, OWN_FILES, json.dumps(states, ensure_ascii=False))
 
 
 def curve_and_band(datablock: Datablock) -> Float64Array:
@@ -180,8 +180,5 @@ def set_primaries(datablock: Datablock, primaries: Primaries) -> None:
 
 
 def fingerprint(datablock: Datablock) -> str:
-    """Return a text that differs between different estimates."""
-    entries = datablock[KEY]
-    if not has_verdict(datablock):
-        return f"{entries['model']} {hash(tuple(entries['brightness'].to_list()))}"
-    return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"
+    """Return a text that differs between responses and their bands."""
+    return f"{datablock[KEY]['model']} {hash(curve_and_band(datablock).tobytes())}"

@@ -62,6 +62,7 @@ def gather_job(
             folder=absolute(chosen["folder"]) or _usual_folder(chosen["apply"], plate),
             depth=chosen["depth"],
             overwrite=chosen["overwrite"],
+            own_files=stored_estimate.own_files(datablock),
             is_composed=chosen["compose"],
             despite_verdict=despite_verdict,
         ),

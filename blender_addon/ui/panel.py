@@ -15,7 +15,7 @@ from .more.load_lut import CRF_OT_load_lut
 from .more.looks import CRF_OT_add_look, draw_view
 from .more.other_plates import CRF_OT_copy_response
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
-from .plate_settings import APPLIED, exported_config, has_written, is_applied, is_to_be_applied
+from .plate_settings import APPLIED, exported_config, is_applied, is_to_be_applied
 from .preferences import APPLY_MODES
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
@@ -100,8 +100,6 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
         text, icon = "Apply Again", "FILE_REFRESH"
     button = layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon)
     button.anyway = not is_trusted
-    if has_written(datablock):
-        button.overwrite = True  # the files are its own
     if has_been:
         draw_text(layout, "Applied with these settings.", icon="CHECKMARK")
         draw_text(layout, _next_step(context, datablock), icon="BLANK1")

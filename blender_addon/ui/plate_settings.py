@@ -110,7 +110,9 @@ class PlateChoices:
         **FOLDER,
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Samples of the baked EXR files", items=DEPTHS)
-    overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace earlier files; is asked anew each time")
+    overwrite: bpy.props.BoolProperty(
+        name="Overwrite", description="Replace files that are not of this plate; is asked anew each time"
+    )
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
         description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear."
@@ -175,18 +177,13 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
 def remember_applied(datablock: bpy.types.ID, completed: "CompletedJob") -> None:
     """Remember on a plate with an estimate that its present settings have been applied, and the exported config."""
     stored_estimate.set_entry(datablock, APPLIED, _comparable(datablock.camera_response_settings))
-    stored_estimate.set_entry(datablock, CONFIG, str(getattr(completed.files, "config", "")))
+    config = completed.files and completed.files.config
+    stored_estimate.set_entry(datablock, CONFIG, str(config or ""))
 
 
 def exported_config(datablock: bpy.types.ID) -> str:
     """Return the config that was exported for a plate with an estimate last; an empty text if it is not known."""
     return datablock[stored_estimate.KEY].get(CONFIG, "")
-
-
-def has_written(datablock: bpy.types.ID) -> bool:
-    """Return whether a plate with an estimate has written files last, of the kind and to the folder of its settings."""
-    applied, present = datablock[stored_estimate.KEY].get(APPLIED, {}), _comparable(datablock.camera_response_settings)
-    return "folder" in present and all(applied.get(name) == present[name] for name in ("apply", "folder"))
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:

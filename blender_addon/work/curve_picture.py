@@ -14,18 +14,14 @@ if TYPE_CHECKING:
 SIZE, MARGIN = 512, 22
 EXTENT = SIZE - 2 * MARGIN - 1
 
-#: Light at the left end of the axis, in stops relative to white, which is at the right end.
-DARKEST = -8
-
-#: Grid lines: stops relative to white, and 8-bit code values.
-STOPS, CODES = (-8, -6, -4, -2, 0), (0, 64, 128, 192, 255)
+DARKEST = -8  # light at the left end of the axis, in stops relative to white, which is at the right end
+STOPS, CODES = (-8, -6, -4, -2, 0), (0, 64, 128, 192, 255)  # grid lines: the same stops, and 8-bit code values
 
 #: Displayed colors, in [0, 1].
 BACKGROUND, GRID = (0.11, 0.11, 0.11), (0.2, 0.2, 0.2)
 BAND, GAMMA, CURVE = (0.22, 0.36, 0.5), (0.6, 0.6, 0.6), (1.0, 0.72, 0.25)
 
-#: Half the width of a line, and the length of a dash, in pixels.
-_HALF_WIDTH, _DASH = 2.0, 12
+_HALF_WIDTH, _DASH = 2.0, 12  # of a line, and the length of a dash, in pixels
 
 
 def draw_response(brightness: Float64Array, lower: Float64Array, upper: Float64Array) -> Float32Array:

@@ -13,10 +13,8 @@ from crfnet.errors import ConfigError
 from .errors import AddonError
 from .job import Job, Plate
 
-#: OpenColorIO's encodings of logarithmic and linear color spaces.
+#: OpenColorIO's encodings of logarithmic and linear color spaces; their names, for configs that give no encoding.
 _LOG_OR_LINEAR_ENCODINGS = ("log", "scene-linear", "display-linear")
-
-#: Names of logarithmic and linear color spaces, for configs that give no encoding.
 _LOG_OR_LINEAR_NAME = re.compile(r"linear|^lin_|aces|adx\d|\blog|log\w?\d?\b", re.IGNORECASE)
 
 

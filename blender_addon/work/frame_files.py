@@ -61,7 +61,7 @@ def frames_of(plate: Plate) -> FrameSequence:
     if plate.numbered is not None:
         before, digits, after = plate.numbered
         name = plate.file.with_name(f"{before}{'#' * digits}{after}")  # for messages, as Blender writes it
-        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=name)
+        return pattern_frames(FramePattern(plate.file.parent, before, digits, after), name=name)
     return find_frames(plate.file)
 
 
@@ -103,21 +103,14 @@ def frame_reader(plate: Plate) -> Iterator[Callable[[FrameSequence], FrameSequen
     if plate.content is None and not plate.frame_count:
         yield lambda sequence: sequence
         return
-    with _temporary_folder(plate) as folder:
-        yield partial(_written, plate, folder)
-
-
-@contextmanager
-def _temporary_folder(plate: Plate) -> Iterator[Path]:
-    """Yield a temporary folder, and remove it at the end; errors name the files in it without the folder."""
     try:
         temporary = tempfile.TemporaryDirectory(prefix="crf_", ignore_cleanup_errors=True)
     except OSError as problem:
         raise _no_room(plate, problem) from None
     with temporary as folder:
         try:
-            yield Path(folder)
-        except CRFNetError as problem:
+            yield partial(_written, plate, Path(folder))
+        except CRFNetError as problem:  # without the folder
             raise type(problem)(str(problem).replace(f"{folder}{os.sep}", "")) from None
 
 
@@ -146,10 +139,8 @@ def _no_room(plate: Plate, problem: OSError) -> AddonError:
 
 def _write_png(path: Path, codes: Uint8Array) -> None:
     """Write code values unchanged: colors are not multiplied by alpha."""
-    header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice
-    output = oiio.ImageOutput.create(str(path))
-    if not (output and output.open(str(path), header) and output.write_image(codes) and output.close()):
-        problem = output.geterror() if output else oiio.geterror()
-        raise AddonError(f"{path}: cannot be written ({problem}); free some space, or install Blender again")
+    buffer = oiio.ImageBuf(codes)
+    buffer.specmod().attribute("oiio:UnassociatedAlpha", 1)
+    buffer.specmod().attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice
+    if not buffer.write(str(path)):
+        raise AddonError(f"{path}: cannot be written ({buffer.geterror()}); free some space, or install Blender again")

@@ -7,6 +7,7 @@ Nothing here refers to Blender's data, so a job may travel between threads, and 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -48,11 +49,9 @@ class Plate:
 
     name: str  # of the file without suffix and frame number: for messages, new files and nodes
     uid: int  # `session_uid` of the image or clip, which finds it again after the run
-    #: The file; of a sequence, its pattern with a placeholder for the frame number, like shot.%04d.png.
-    file: Path
-    pattern: str  # the file names with * for the frame number, like shot.*.png
-    #: Of a sequence the file name before the frame number, the digits of the number, and the name after it. A name may
-    #: hold placeholders of its own, so `file` is not to be read as a pattern again.
+    file: Path  # of a sequence, one of its frames
+    #: Of a sequence the file name before the frame number, the digits of the number, and the name after it: a name may
+    #: hold placeholders of its own, so it is not to be read as a pattern.
     numbered: tuple[str, int, str] | None
     color_space: str  # as Blender takes the file
     folder: Path | None  # for new files unless the user chooses one; None for a plate without a file of its own
@@ -75,15 +74,10 @@ class Plate:
         """
         number = _FRAME_NUMBER.fullmatch(path.stem) if is_sequence else None
         if number is None:
-            return cls(name=path.stem, file=path, pattern=path.name, numbered=None, **fields)
+            return cls(name=path.stem, file=path, numbered=None, **fields)
         before, digits, after = number.groups()
-        return cls(
-            name=(before.rstrip("._- ") + after) or Path(datablock_name).stem,
-            file=path.with_name(f"{before}%0{len(digits)}d{after}{path.suffix}"),
-            pattern=f"{before}*{after}{path.suffix}",
-            numbered=(before, len(digits), after + path.suffix),
-            **fields,
-        )
+        name = (before.rstrip("._- ") + after) or Path(datablock_name).stem
+        return cls(name=name, file=path, numbered=(before, len(digits), after + path.suffix), **fields)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,6 +108,7 @@ class Output:
     folder: Path | None  # for files; None if none is known
     depth: str  # of baked files: "half" or "float"
     overwrite: bool
+    own_files: Mapping[str, str] = field(default_factory=dict)  # those that the plate wrote: path -> `file_state`
     is_composed: bool = False  # whether the compositor puts the render over a plate that it does not show yet
     despite_verdict: bool = False  # whether a response is applied that is not to be trusted
 
@@ -127,3 +122,15 @@ class Job:
     exposure: Exposure
     output: Output
     config: str
+
+
+def file_state(path: Path) -> str:
+    """Return the name, the size in bytes and the time in seconds of a file, a line each; empty if it is not found.
+
+    The folder does not count, so that a project can be moved.
+    """
+    try:
+        status = path.stat()
+    except OSError:
+        return ""
+    return f"{path.name}\n{status.st_size}\n{status.st_mtime:.0f}"

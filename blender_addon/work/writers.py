@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The files of each way to apply a response, named as the `crfnet` command would name them."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,8 +14,10 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
-from crfnet.output_files import OutputFiles, check_folder, plain_stem
+from crfnet.output_files import OutputFiles, plain_stem
+from crfnet.output_files import check_targets as check_files
 from crfnet.pipeline import OutputPlan, deliver
+from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import linear_targets
@@ -25,27 +28,15 @@ from crfnet_core.types import Progress
 from .encoding_check import is_said_encoded
 from .errors import AddonError
 from .frame_files import PlateFrames, frame_reader
-from .job import WITHOUT_FILES, ApplyMode, Job, Plate
+from .job import WITHOUT_FILES, ApplyMode, Job, Plate, file_state
 
 
 @dataclass(frozen=True)
-class Baked:
-    """Linear EXR files in the order of their frames, of a sequence or a single image."""
+class Written:
+    """Linear EXR files in the order of their frames, or LUT files and a config."""
 
     files: tuple[Path, ...]
-    is_sequence: bool
-
-
-@dataclass(frozen=True)
-class Exported:
-    """LUT files and a config, the folder that they are in, and the config."""
-
-    folder: Path
-    files: tuple[Path, ...]
-    config: Path
-
-
-Written = Baked | Exported
+    config: Path | None = None  # of an export
 
 
 def write(
@@ -76,49 +67,50 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
             f"{job.plate.name}: movies are not baked; choose Nodes and render, or open the movie's frames as an image"
             " sequence"
         )
-    folder = _folder(job)
-    check_folder(folder)
+    folder, files = _folder(job), output_files(job.plate, _folder(job))
+    targets = (*files.luts, files.config)
     if job.output.mode is ApplyMode.BAKE:
         targets = linear_targets(folder / baked_name(job.plate), sequence())
-    else:
-        files = output_files(job.plate, folder)
-        targets = (*files.luts, files.config)
-    existing = [path for path in targets if path.exists()]
-    if existing and not job.output.overwrite:
-        more = f" (and {len(existing) - 1} more)" if existing[1:] else ""
-        raise AddonError(
-            f"{existing[0].name} exists already in {folder}{more}; tick Overwrite or choose another Folder"
-        )
+    check_files(folder, [path for path in targets if not _is_own(job, path)], overwrite=job.output.overwrite)
 
 
-def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Baked:
+def _is_own(job: Job, path: Path) -> bool:
+    """Return whether the plate wrote a file, and nobody since."""
+    return job.output.own_files.get(str(path)) == file_state(path)
+
+
+def _may_replace(job: Job, targets: Sequence[Path]) -> bool:
+    """Return whether files may be replaced: on demand, or because all that exist are the plate's own."""
+    existing = [path for path in targets if os.path.lexists(path)]
+    return job.output.overwrite or (bool(existing) and all(_is_own(job, path) for path in existing))
+
+
+def _bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None) -> Written:
     """Write the linear plate, or all its frames."""
     folder = _folder(job)
     oiio.attribute("debug", 0)  # else the builds of some distributions print what OpenEXR does not store, for each file
     targets = linear_targets(folder / baked_name(job.plate), sequence)
-    options = PlateOptions(
-        depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
-    )
+    is_encoded, overwrite = is_said_encoded(job), _may_replace(job, targets)
+    options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=overwrite, is_encoded=is_encoded)
     plan = OutputPlan(replace(output_files(job.plate, folder), luts=(), linear=targets), options)
     primaries = PlatePrimaries(REC709, "as the plate is tagged")
     light = PlateLight(lut, stops, primaries, linear_space(primaries))
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=job.plate.alpha_mode)
     with frame_reader(job.plate) as read:
         deliver(plan, light, [read(frames)], progress=progress)
-    return Baked(targets, is_sequence=job.plate.numbered is not None)
+    return Written(targets)
 
 
-def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Exported:
+def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Written:
     """Write the LUT in three formats, and the config that Blender runs on with the plate's color space added."""
     folder = _folder(job)
     files = output_files(job.plate, folder)
     hint = job.plate.folder.name if job.plate.folder else ""
     look = Look(color_space(job.plate, files, stops, primaries), lut, hint)
     others = {path.name: lut for path in files.luts if path != files.lut}
-    derived = write_derived_config(
-        find_config(job.config), folder, [look], others=others, overwrite=job.output.overwrite
-    )
-    return Exported(folder, derived.files, derived.path)
+    overwrite = _may_replace(job, (*files.luts, files.config))
+    derived = write_derived_config(find_config(job.config), folder, [look], others=others, overwrite=overwrite)
+    return Written(derived.files, derived.path)
 
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
@@ -128,7 +120,8 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:
     """Return the plate's color space, with a file rule for all its files."""
-    space = PlateColorSpace.from_outputs(files, _photo(plate), exposure=stops, file_pattern=plate.pattern)
+    rule = FramePattern(plate.file.parent, *plate.numbered).rule if plate.numbered else ""
+    space = PlateColorSpace.from_outputs(files, _photo(plate), exposure=stops, file_pattern=rule)
     return replace(space, primaries=primaries)
 
 

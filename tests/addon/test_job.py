@@ -1,4 +1,4 @@
-"""The plate of a file: its names, and the pattern of its frames."""
+"""The plate of a file: its names, and the names of its frames."""
 
 from pathlib import Path
 
@@ -10,23 +10,17 @@ SHOTS = Path("/shots")
 
 
 @pytest.mark.parametrize(
-    ("file", "name", "placeholder", "pattern"),
+    ("file", "name", "numbered"),
     [
-        ("shot.0001.png", "shot", "shot.%04d.png", "shot.*.png"),
-        ("shot_1001.jpg", "shot", "shot_%04d.jpg", "shot_*.jpg"),
-        ("shot7.tif", "shot", "shot%01d.tif", "shot*.tif"),
-        ("sh010_v2.0099_main.png", "sh010_v2_main", "sh010_v2.%04d_main.png", "sh010_v2.*_main.png"),
-        ("0042.dpx", "Beach", "%04d.dpx", "*.dpx"),
+        ("shot.0001.png", "shot", ("shot.", 4, ".png")),
+        ("shot_1001.jpg", "shot", ("shot_", 4, ".jpg")),
+        ("shot7.tif", "shot", ("shot", 1, ".tif")),
+        ("sh010_v2.0099_main.png", "sh010_v2_main", ("sh010_v2.", 4, "_main.png")),
+        ("0042.dpx", "Beach", ("", 4, ".dpx")),
+        ("beach.png", "beach", None),
     ],
 )
-def test_the_last_number_of_a_sequences_file_is_the_frame_number(file, name, placeholder, pattern):
+def test_the_last_number_of_a_sequences_file_is_the_frame_number(file, name, numbered):
     plate = plate_from_file(SHOTS / file, is_sequence=True, name="Beach.001")
-    assert plate.numbered is not None
-    assert (plate.name, plate.file, plate.pattern) == (name, SHOTS / placeholder, pattern)
-
-
-@pytest.mark.parametrize(("file", "is_sequence"), [("IMG_1234.jpg", False), ("beach.png", True)])
-def test_a_file_that_is_no_frame_stands_for_itself(file, is_sequence):
-    plate = plate_from_file(SHOTS / file, is_sequence=is_sequence)
-    assert plate.numbered is None
-    assert (plate.name, plate.file, plate.pattern) == (Path(file).stem, SHOTS / file, file)
+    assert (plate.name, plate.file, plate.numbered) == (name, SHOTS / file, numbered)
+    assert plate_from_file(SHOTS / "IMG_1234.jpg").numbered is None

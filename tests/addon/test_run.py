@@ -6,9 +6,9 @@ import shutil
 import numpy as np
 import pytest
 
-from blender_addon.work import frame_files, writers
+from blender_addon.work import frame_files
 from blender_addon.work import run as run_module
-from blender_addon.work.errors import AddonError, CancelledError
+from blender_addon.work.errors import CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet.errors import LutError, PlateError
@@ -58,7 +58,7 @@ def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, m
     completed = run(make_job(sequence_file, is_sequence=True, mode=ApplyMode.EXPORT, stored=stored))
     assert completed.estimate is stored
     assert completed.frames == ()
-    assert isinstance(completed.files, writers.Exported)
+    assert completed.files.config.name == "config.ocio"
 
 
 def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, tmp_path, codes, estimate, monkeypatch):
@@ -98,7 +98,7 @@ def test_a_gray_that_is_black_is_told_and_the_estimate_kept(make_job, plate_file
 def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
     run(make_job(mode=mode))
     loads = calls(estimates, "load_network")
-    with pytest.raises(AddonError, match=r"exists already in .*; tick Overwrite or choose another Folder"):
+    with refused(PlateError, "file_exists" if mode is ApplyMode.BAKE else "files_exist"):
         run(make_job(mode=mode))
     assert loads == []
     assert run(make_job(mode=mode, overwrite=True)).files is not None

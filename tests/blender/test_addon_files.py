@@ -1,6 +1,7 @@
 """Bake and export: files judged by their pixels, the exported config in a Blender started with it."""
 
 import os
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,23 +33,30 @@ def test_export(image, plate_file, tmp_path, codes, estimate, in_editor):
     from blender_addon.ui.more.load_lut import _first_folder
 
     folder = tmp_path / "look"
-    image.camera_response_settings.apply, image.camera_response_settings.folder = "EXPORT", str(folder)
     run(image, "EXPORT", folder=str(folder))
     assert f"OCIO={folder / 'config.ocio'}" in "".join(labels(drawn_in(image, in_editor)))  # lines may end in the path
     assert _first_folder(image) == f"{folder}{os.sep}"
-    image.camera_response_settings.exposure = 1
-    assert ("set", "overwrite", True) in drawn_in(image, in_editor)  # the files are its own
-    image.camera_response_settings.exposure, image.camera_response_settings.folder = 0, str(tmp_path)
-    assert ("set", "overwrite", True) not in drawn_in(image, in_editor)
     assert set(listed(folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
     expected = estimate(plate_file).curve.inverse(codes / 255)
     for suffix in WRITERS:
         assert np.abs(read_lut(folder / f"plate{suffix}").apply(codes / 255) - expected).max() < FLOAT
     light = converted(loaded(folder / "config.ocio"), "CRF plate", "scene_linear", codes / 255)
     assert np.abs(light - expected).max() < 1e-5
+
+
+@pytest.mark.parametrize(("mode", "name"), [("EXPORT", "plate.cube"), ("BAKE", "plate_linear.exr")])
+def test_a_plate_replaces_its_own_files_and_those_of_others_on_demand_only(image, tmp_path, mode, name):
+    again, file = partial(apply, image, folder=str(tmp_path)), tmp_path / name
+    run(image, mode, folder=str(tmp_path))
+    for way in ("EXPORT", "BAKE", mode):
+        again(way, exposure=1)
+    run(image, mode, folder=str(tmp_path), exposure=2)
+    file.write_bytes(b"of another")
     with pytest.raises(RuntimeError, match="exists already"):
-        run(image, "EXPORT", folder=str(folder))
-    apply(image, "EXPORT", folder=str(folder), overwrite=True)
+        again(mode)
+    assert file.read_bytes() == b"of another"
+    again(mode, overwrite=True)
+    again(mode)
 
 
 def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, tmp_path, monkeypatch):

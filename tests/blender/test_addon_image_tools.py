@@ -104,6 +104,13 @@ def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_p
         assert bpy.app.timers.is_registered(comparison.renew)
         comparison.renew()
         assert np.abs(pixels_of(space.image)[..., :3] - curve.inverse(np.roll(codes, 4, axis=0) / 255)).max() < 1e-6
+        for number in (0, 3):
+            bpy.context.scene.frame_set(number)
+            comparison.renew()
+            assert not pixels_of(space.image).any()  # a missing frame is empty
+        bpy.context.scene.frame_set(2)
+        comparison.renew()  # it comes back
+        assert np.abs(pixels_of(space.image)[..., :3] - curve.inverse(np.roll(codes, 2, axis=0) / 255)).max() < 1e-6
         show(after=False)
         bpy.context.scene.frame_set(3)
         with pytest.raises(RuntimeError, match=r"shot\.0003\.png"):

@@ -58,7 +58,7 @@ def test_a_picture_of_two_eyes_is_refused(addon, tmp_path, codes):
 def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes, in_editor):
     from blender_addon.work.frame_files import frames_of
 
-    names = [write_image(tmp_path / f"shot.{n}.png", codes).name for n in range(1001, 1006)]
+    names = [write_image(tmp_path / f"shot.{n}.png", codes.repeat(8, 0)).name for n in range(1001, 1006)]
     files = [{"name": name} for name in names]
     first = str(tmp_path / names[0])
     bpy.ops.image.open(filepath=first, directory=str(tmp_path), files=files, use_udim_detecting=True)
@@ -69,6 +69,7 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
         assert ("crf.read_as_sequence", "SEQUENCE") in operators(drawn_in(image, in_editor))
         assert bpy.ops.crf.read_as_sequence() == {"FINISHED"}
         assert not bpy.ops.crf.read_as_sequence.poll()
+        assert space.zoom_percentage < 100  # as it fits
         bpy.context.scene.frame_set(1)
         assert Path(image.filepath_from_user(image_user=space.image_user)).name == "shot.1001.png"
     assert (image.source, image.name) == ("SEQUENCE", "shot.1001.png")

@@ -36,11 +36,11 @@ def test_a_panel_reads_each_node_once_and_the_next_one_reads_it_again(image, tre
     from blender_addon.scene.nodes import links
 
     apply(image)
-    blur, read = tree.nodes.new("CompositorNodeBlur"), []
-    monkeypatch.setattr(links, "shown_by_node", lambda node: read.append(node) or plates.shown_by_node(node))
+    group, read = groups(tree)[0], []
+    monkeypatch.setattr(links, "datablock_of_node", lambda node: read.append(node) or plates.datablock_of_node(node))
     for draws in (1, 2):
         words_on(image, in_editor)
-        assert read.count(blur) == draws
+        assert read.count(group) == draws
 
 
 def exposures(scene):

@@ -15,19 +15,16 @@ if TYPE_CHECKING:
 #: Whether this is Blender 5.0 or later, whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
-#: The distance between a group's node and its neighbors, and its width, in units of the node editor.
+#: In units of the node editor: the distance between a group's node and its neighbors, and its width; the distances
+#: between the nodes of neighboring columns and rows.
 GAP, WIDTH = 60, 320
+_COLUMN, _ROW = 190, -230
 
 #: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")
 
-#: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
-_COLUMN, _ROW = 190, -230
-
 Socket: TypeAlias = bpy.types.NodeSocket
-
-#: An operand of a node that computes: a socket, or a number or vector.
-Operand: TypeAlias = Socket | float | list[float]
+Operand: TypeAlias = Socket | float | list[float]  # of a node that computes
 
 
 def activate(node: bpy.types.Node) -> None:
@@ -117,20 +114,12 @@ class NodeGrid:
         self.link(colors, node.inputs["Image"])
         return node.outputs[0]
 
-    def multiply_by_alpha(self, colors: Socket, column: float) -> Socket:
-        """Return the socket of colors that are multiplied by their alpha."""
-        return self._convert_alpha(colors, column, "To Premultiplied", "STRAIGHT_TO_PREMUL")
-
-    def divide_by_alpha(self, colors: Socket, column: float) -> Socket:
-        """Return the socket of colors that are divided by their alpha."""
-        return self._convert_alpha(colors, column, "To Straight", "PREMUL_TO_STRAIGHT")
-
-    def _convert_alpha(self, colors: Socket, column: float, kind: str, earlier_kind: str) -> Socket:
-        """Return the socket of an Alpha Convert node; its kind has another name in Blender 4.5."""
+    def convert_alpha(self, colors: Socket, column: float, *, is_multiplied: bool) -> Socket:
+        """Return the socket of colors that are multiplied by their alpha, or divided by it."""
         node = self.node("CompositorNodePremulKey", column)
         if IS_BLENDER_5:
-            node.inputs["Type"].default_value = kind
+            node.inputs["Type"].default_value = "To Premultiplied" if is_multiplied else "To Straight"
         else:
-            node.mapping = earlier_kind
+            node.mapping = "STRAIGHT_TO_PREMUL" if is_multiplied else "PREMUL_TO_STRAIGHT"
         self.link(colors, node.inputs["Image"])
         return node.outputs[0]

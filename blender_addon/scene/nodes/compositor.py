@@ -17,8 +17,7 @@ from .ready_comp import is_free, put_render_over_plate
 #: Holds the timing of a sequence: the image user of an editor or texture, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
 
-#: Difference of two exposures, in stops, that single precision makes at most.
-_SAME_EXPOSURE = 1e-5
+_SAME_EXPOSURE = 1e-5  # difference, in stops, that single precision makes at most
 
 
 @dataclass(frozen=True)

@@ -21,23 +21,20 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float64Array
 
-#: The steps of the table that Blender makes of a curve; between them it is linear.
-STEPS = 256
+STEPS = 256  # of the table that Blender makes of a curve; between them it is linear
+WHITE, DEEP_WHITE = 255, 65535  # the largest codes of 8 and 16 bits
+DARK = 7  # the last code of 8 bits that is too dark for a limit in stops
 
-#: The largest codes of 8 and 16 bits; codes of 16 bits up to DARK are too dark for a limit in stops.
-WHITE, DEEP_WHITE, DARK = 255, 65535, 7 * 257
+#: Each code of 9 to 16 bits above `DARK`, in codes of 16 bits.
+_DEEP = np.unique(np.concatenate([np.linspace(0, DEEP_WHITE, 2**bits) for bits in range(9, 17)]))
+_DEEP = _DEEP[_DEEP > DARK * DEEP_WHITE / WHITE]
 
 #: Largest error of the curves of a deep plate, in stops: with that of half floats on the GPU, it stays below 0.001.
 TOLERANCE = 3e-4
+_TRIED = 96  # lengths for a part
 
-#: The lengths that are tried for a part.
-_TRIED = 64
-
-#: The start and the end of the inputs of one node.
-Part: TypeAlias = tuple[float, float]
-
-#: The part of a plate of 8 bits, whose table has a step at every code.
-EIGHT_BITS: Part = (0, (WHITE + 1) / WHITE)
+Part: TypeAlias = tuple[float, float]  # the start and the end of the inputs of one node
+EIGHT_BITS: Part = (0, (WHITE + 1) / WHITE)  # of a plate of 8 bits: its table has a step at every code
 
 
 def add_curves(
@@ -55,20 +52,19 @@ def add_curves(
 
 
 def deep_parts(curve: ResponseCurve) -> list[Part]:
-    """Return the parts in which an inverse response is within `TOLERANCE` on all codes of 16 bits above `DARK`."""
-    codes = np.arange(DEEP_WHITE + 1)
-    light = curve.inverse(codes / DEEP_WHITE)
+    """Return the parts in which an inverse response is within `TOLERANCE` on all codes of 9 to 16 bits above `DARK`."""
+    light = curve.inverse(_DEEP / DEEP_WHITE)
 
     def is_close(start: int, end: int) -> bool:
-        steps, inside = np.linspace(start, end, STEPS + 1), codes[max(start, DARK + 1) : end + 1]
-        drawn = np.interp(inside, steps, curve.inverse(steps / DEEP_WHITE))
+        steps, inside = np.linspace(start, end, STEPS + 1), slice(*np.searchsorted(_DEEP, (start, end)))
+        drawn = np.interp(_DEEP[inside], steps, curve.inverse(steps / DEEP_WHITE))
         return bool((abs(np.log2(drawn / light[inside])) <= TOLERANCE).all())
 
     ends = [0]
     while ends[-1] < DEEP_WHITE:
         start = ends[-1]
-        lengths = np.geomspace(max(DEEP_WHITE - start, STEPS), STEPS, _TRIED).round().astype(int).tolist()
-        ends.append(start + next(length for length in lengths if is_close(start, start + length)))  # the last is exact
+        lengths = np.geomspace(DEEP_WHITE - start, 1, _TRIED).round().astype(int).tolist()
+        ends.append(start + next((length for length in lengths if is_close(start, start + length)), 1))
     return [(start / DEEP_WHITE, end / DEEP_WHITE) for start, end in pairwise(ends)]
 
 

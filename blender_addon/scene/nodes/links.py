@@ -9,18 +9,17 @@ from typing import Any
 
 import bpy
 
-from ..plates import NODE_TREES, SHADER, Datablock, datablock_of_node, shown_by_node
+from ..plates import NODE_TREES, SHADER, SHOWN, Datablock, datablock_of_node, shown_by_node
 
-#: The custom property of the add-on's node groups; its value is the plate's image or clip.
-PLATE = "camera_response_of"
+# Custom properties of the add-on's node groups:
+PLATE = "camera_response_of"  # the plate's image or clip
+LOOK = "camera_response_look_of"  # the same, of a "Camera Look"
+WORKING_SPACE = "camera_response_working_space"  # of a shader's, the name of the working space that it converts to
 
-#: The same of the node groups "Camera Look".
-LOOK = "camera_response_look_of"
+#: The types of nodes that may show an image or clip, or hold a node group.
+_KEY_TYPES = ("GROUP", *SHOWN)
 
-#: The custom property of a shader's node group with the name of the working space that it converts to.
-WORKING_SPACE = "camera_response_working_space"
-
-#: The answers of functions that are `_asked_once`, by function and argument; None but for `trees_at_rest`.
+#: The answers of functions that are `_asked_once`, by function and arguments; None but for `trees_at_rest`.
 _answers: dict[Any, Any] | None = None
 
 
@@ -43,15 +42,15 @@ def trees_at_rest() -> Iterator[None]:
         _answers = None
 
 
-def _asked_once(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Return a function of a tree or node that keeps its answers while trees are at rest."""
+def _asked_once(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of trees, nodes or plates that keeps its answers while trees are at rest."""
 
-    def asked(about: Any) -> Any:
+    def asked(*about: Any) -> Any:
         if _answers is None:
             with trees_at_rest():
-                return asked(about)
+                return asked(*about)
         if (function, about) not in _answers:
-            _answers[function, about] = function(about)
+            _answers[function, about] = function(*about)
         return _answers[function, about]
 
     return asked
@@ -59,8 +58,8 @@ def _asked_once(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 @_asked_once
 def key_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
-    """Return the nodes of a tree that show an image or clip, or hold a node group."""
-    return [node for node in tree.nodes if node.type == "GROUP" or shown_by_node(node) is not None]
+    """Return the nodes of a tree that may show an image or clip, or hold a node group; a file has thousands."""
+    return [node for node in tree.nodes if node.type in _KEY_TYPES]
 
 
 @_asked_once
@@ -132,11 +131,13 @@ def has_groups() -> bool:
     return any(PLATE in group or LOOK in group for group in bpy.data.node_groups)
 
 
-def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
-    """Yield the nodes of the file that show a plate or its code values."""
-    yield from (node for tree in node_trees() for node in key_nodes(tree) if datablock_of_node(node) == plate)
+@_asked_once
+def nodes_of(plate: Datablock) -> list[bpy.types.Node]:
+    """Return the nodes of the file that show a plate or its code values."""
+    return [node for tree in node_trees() for node in key_nodes(tree) if datablock_of_node(node) == plate]
 
 
+@_asked_once
 def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> list[bpy.types.Node]:
     """Return the nodes that hold a plate's node group, or look, and are not those of other scenes only."""
     return [node for tree in trees_here(scene) for node in key_nodes(tree) if holds_group_of(node, plate, name)]
@@ -144,7 +145,7 @@ def groups_of(plate: Datablock, scene: bpy.types.Scene, name: str = PLATE) -> li
 
 def holds_group_of(node: bpy.types.Node, plate: Datablock, name: str = PLATE) -> bool:
     """Return whether a node holds a plate's node group, or look, muted or not."""
-    tree = getattr(node, "node_tree", None)
+    tree = node.node_tree if node.type == "GROUP" else None
     return tree is not None and tree.get(name) == plate
 
 
@@ -208,6 +209,6 @@ def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node
     if node.type == "GROUP" and node.node_tree is not None and way is not _Way.LEFT:
         yield from ((inner, _Way.ENTERED) for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
     if node.type == "GROUP_OUTPUT" and way is not _Way.ENTERED:
-        for tree in node_trees():
-            holders = (outer for outer in key_nodes(tree) if getattr(outer, "node_tree", 0) == node.id_data)
-            yield from ((outer, _Way.LEFT) for outer in holders)
+        for outer in (outer for tree in node_trees() for outer in key_nodes(tree) if outer.type == "GROUP"):
+            if outer.node_tree == node.id_data:
+                yield outer, _Way.LEFT

@@ -23,11 +23,8 @@ from .curves import STEPS, add_curves
 from .links import LOOK, groups_of, holds_group_of, output_of
 from .plate_group import by_channel, linear_rec709, made_for, new_group, working_space
 
-#: The output of the group with code values.
-CODE_VALUES = "Code Values"
-
-#: The ends of the parts of light in which the response is drawn; the last lies beyond 1.
-_ENDS = [end / (SAMPLES - 1) for end in range(0, SAMPLES + 1, STEPS)]
+CODE_VALUES = "Code Values"  # the output of the group that has them
+_ENDS = [end / (SAMPLES - 1) for end in range(0, SAMPLES + 1, STEPS)]  # of the parts of light; the last lies beyond 1
 
 #: Names of sRGB, the encoding of displays, in common configs.
 SRGB = ("sRGB", "sRGB Encoded Rec.709 (sRGB)", "sRGB - Texture", "Utility - sRGB - Texture")
@@ -67,7 +64,7 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     group.nodes.clear()
     grid = NodeGrid(group)
     start, end = grid.node("NodeGroupInput", 0), grid.node("NodeGroupOutput", 15)
-    straight = grid.divide_by_alpha(start.outputs["Image"], 1)
+    straight = grid.convert_alpha(start.outputs["Image"], 1, is_multiplied=False)
     light = grid.node("CompositorNodeExposure", 3)
     grid.link(grid.convert_color_space(working, linear, straight, 2), light.inputs["Image"])
     grid.link(grid.math("MULTIPLY", 2, 1, start.outputs["Exposure"], -1), light.inputs["Exposure"])
@@ -75,18 +72,17 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     if matrix is not None:
         exposed = by_channel(grid, exposed, np.asarray(np.linalg.inv(matrix), float), 4)
     codes = add_curves(grid, exposed, curve.forward, list(pairwise(_ENDS)), 9)
-    grid.link(grid.multiply_by_alpha(codes, 14), end.inputs[CODE_VALUES])
+    grid.link(grid.convert_alpha(codes, 14, is_multiplied=True), end.inputs[CODE_VALUES])
     shown = grid.convert_color_space(srgb_space, working, codes, 13)
-    grid.link(grid.multiply_by_alpha(shown, 14), end.inputs["Image"])
+    grid.link(grid.convert_alpha(shown, 14, is_multiplied=True), end.inputs["Image"])
     return group
 
 
 def srgb() -> str:
     """Return the name of sRGB in the config of this session."""
-    known = color_spaces()
-    for name in SRGB:
-        if name in known:
-            return name
+    known = [name for name in SRGB if name in color_spaces()]
+    if known:
+        return known[0]
     raise ConfigError("this config has no sRGB space, which the look needs; use Blender's own config")
 
 

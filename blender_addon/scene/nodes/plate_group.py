@@ -23,8 +23,7 @@ from .building import CHANNELS, NodeGrid, Socket
 from .curves import EIGHT_BITS, Part, add_curves, deep_parts
 from .links import PLATE, WORKING_SPACE, file_space
 
-#: The name of the colors of a node group by the kind of node tree.
-_COLORS = {COMPOSITOR: "Image", SHADER: "Color"}
+_COLORS = {COMPOSITOR: "Image", SHADER: "Color"}  # the name of the colors of a node group by the kind of node tree
 
 
 def build_group(
@@ -56,10 +55,9 @@ def check_config() -> None:
 
 def linear_rec709() -> str:
     """Return the name of linear Rec.709 in the config of this session."""
-    known = color_spaces()
-    for name in LINEAR_REC709:
-        if name in known:
-            return name
+    known = [name for name in LINEAR_REC709 if name in color_spaces()]
+    if known:
+        return known[0]
     raise ConfigError("this config has no linear Rec.709 space, which the nodes need; choose another way to apply it")
 
 
@@ -129,7 +127,7 @@ def _add_nodes(group: bpy.types.NodeTree, plate: Datablock, curve: ResponseCurve
     start = grid.node("NodeGroupInput", 0)
     codes = start.outputs["Image"]
     if mode == "PREMUL":
-        codes = grid.divide_by_alpha(codes, 1)
+        codes = grid.convert_alpha(codes, 1, is_multiplied=False)
     light = add_curves(grid, codes, curve.inverse, parts, 2)
     if matrix is not None or mode == "NONE":
         light = by_channel(grid, light, matrix, 3, has_alpha=mode != "NONE")
@@ -138,7 +136,7 @@ def _add_nodes(group: bpy.types.NodeTree, plate: Datablock, curve: ResponseCurve
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
     light = exposed.outputs[0]
     if mode not in ("NONE", "CHANNEL_PACKED"):
-        light = grid.multiply_by_alpha(light, 9)  # before the conversion: faster
+        light = grid.convert_alpha(light, 9, is_multiplied=True)  # before the conversion: faster
     grid.link(grid.convert_color_space(linear_rec709(), working_space(), light, 10), end.inputs["Image"])
 
 

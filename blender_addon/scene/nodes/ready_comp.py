@@ -6,8 +6,7 @@ import bpy
 from .building import GAP, IS_BLENDER_5, Socket
 from .links import LOOK, linearizes, output_of
 
-#: Nodes that hand the render on as it is.
-_PASSING = ("R_LAYERS", "REROUTE")
+_PASSING = ("R_LAYERS", "REROUTE")  # nodes that hand the render on as it is
 
 
 def is_plain(tree: bpy.types.NodeTree | None) -> bool:

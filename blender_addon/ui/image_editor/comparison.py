@@ -17,25 +17,20 @@ import bpy
 import numpy as np
 
 from ... import lazy_import
+from ...scene import stored_estimate
 from ...scene.color_management import running_config
-from ...scene.plates import COMPARED_PLATE, compared_plate, plate_itself, plate_of
-from ...work.errors import AddonError
+from ...scene.nodes import compositor
+from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, file_state, plate_itself, plate_of
+from ...work.errors import AddonError, expected_errors
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array, Float64Array
 
-#: The custom property of these images with the key of their pixels.
-_KEY = "camera_response_key"
-
-#: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
-_LARGEST = 65535
-
-#: Rows that are converted at a time: few enough to stay in the processor's cache.
-_ROWS = 16
-
-#: Seconds after the last change of the exposure or frame until linear plates show it: no slider or player waits.
-_PAUSE = 0.2
+_KEY = "camera_response_key"  # the custom property of these images with the key of their pixels
+_LARGEST = 65535  # code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits
+_ROWS = 16  # that are converted at a time: few enough to stay in the processor's cache
+_PAUSE = 0.2  # seconds after a change of exposure or frame until linear plates show it: no slider or player waits
 
 
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
@@ -56,15 +51,6 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
     space.image = linear
 
 
-def show_again(space: bpy.types.SpaceImageEditor, key: str) -> bool:
-    """Show the linear plate that was made by a key; return whether there is one."""
-    linear = _linear_image(space.image)
-    if linear is None or not key or linear[_KEY] != key:
-        return False
-    space.image = linear
-    return True
-
-
 def _linear_image(plate: bpy.types.Image) -> bpy.types.Image | None:
     """Return the linear plate of a plate, of whatever key."""
     return next((image for image in bpy.data.images if compared_plate(image) == plate), None)
@@ -83,7 +69,7 @@ def same_view(context: bpy.types.Context) -> Iterator[None]:
     if space is None or space.type != "IMAGE_EDITOR" or space.image is None:
         yield
         return
-    region = next(each for each in context.area.regions if each.type == "WINDOW")
+    region = _picture_region(context.area)
     zoom, size = space.zoom_percentage, tuple(space.image.size)  # which Blender does not know yet of a new sequence
     center = region.view2d.region_to_view(region.width / 2, region.height / 2)
     yield
@@ -95,6 +81,18 @@ def same_view(context: bpy.types.Context) -> Iterator[None]:
         bpy.ops.image.view_all()
         space.zoom_percentage = zoom
         bpy.ops.image.view_pan(offset=offset)
+
+
+def frame_view(context: bpy.types.Context) -> None:
+    """Show the whole picture of an Image Editor that has another size than before."""
+    update_frame(context.space_data.image_user)
+    with context.temp_override(region=_picture_region(context.area)):
+        bpy.ops.image.view_all()
+
+
+def _picture_region(area: bpy.types.Area) -> bpy.types.Region:
+    """Return the region of an Image Editor that shows the picture."""
+    return next(region for region in area.regions if region.type == "WINDOW")
 
 
 def end_all() -> None:
@@ -124,10 +122,52 @@ def renew() -> None:
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR" and compared_plate(area.spaces.active.image) is not None:
-                # the operator has reported what it cannot read, such as a missing frame
-                with bpy.context.temp_override(window=window, area=area), suppress(RuntimeError):
-                    bpy.ops.crf.compare(is_after=True)
+                with bpy.context.temp_override(window=window, area=area), same_view(bpy.context):
+                    _renew_in(area.spaces.active)
                 area.tag_redraw()
+
+
+def _renew_in(space: bpy.types.SpaceImageEditor) -> None:
+    """Show the present linear plate in an editor; of a missing frame an empty picture, until one that exists."""
+    linear = space.image
+    end(space)
+    try:
+        show_linear(space)
+    except expected_errors():
+        if space.image.source != "FILE":
+            width, height = linear.size
+            begin(space, np.zeros((height, width, 4), np.float32), linear.colorspace_settings.name, key="")
+
+
+def show_linear(space: bpy.types.SpaceImageEditor) -> None:
+    """Show the linear plate of what an editor shows, by the stored response and the present exposure.
+
+    Raise AddonError or CRFNetError if the plate cannot be read, or there is no room for a file.
+    """
+    plate, user = space.image, space.image_user
+    settings, curve = plate.camera_response_settings, stored_estimate.restored(plate).curve
+    gray = settings.gray if settings.anchor == "GRAY" else None
+    stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
+    key, linear = _key(plate, stops), _linear_image(plate)
+    if linear is not None and key and linear[_KEY] == key:
+        space.image = linear
+        return
+    update_frame(user)
+    pixels = linear_pixels(code_values(plate, user), curve, stops, stored_estimate.matrix(plate))
+    begin(space, pixels, lazy_import.load(".scene.nodes.plate_group").linear_rec709(), key)
+
+
+def update_frame(user: bpy.types.ImageUser) -> None:
+    """Give an editor's sequence its present frame, which Blender does only where it draws the sequence itself."""
+    if user.use_auto_refresh:
+        timing = compositor.FrameTiming.from_user(user)
+        user.frame_current = timing.number_on(bpy.context.scene.frame_current)
+
+
+def _key(plate: bpy.types.Image, stops: float) -> str:
+    """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
+    details = (stored_estimate.fingerprint(plate), stops, alpha_mode(plate), stored_estimate.primaries(plate))
+    return f"{state} {details}" if (state := file_state(plate)) and plate.source == "FILE" else ""
 
 
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:

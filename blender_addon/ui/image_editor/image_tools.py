@@ -20,8 +20,7 @@ from . import comparison
 if TYPE_CHECKING:
     from crfnet_core.types import Float32Array
 
-#: Half the side of the square of pixels whose mean is picked.
-REACH = 2
+REACH = 2  # half the side of the square of pixels whose mean is picked
 
 #: The entry of the key in Blender's keymaps, with its keymap, while it is there.
 _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
@@ -55,7 +54,7 @@ class CRF_OT_compare(bpy.types.Operator):
             comparison.end(space)
             try:
                 if is_after:
-                    _show_linear(space)
+                    comparison.show_linear(space)
             except expected_errors() as problem:
                 return failed(self, problem)
         return {"FINISHED"}
@@ -158,6 +157,8 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
             with suppress(*expected_errors()):  # reported where a response is estimated
                 frames = lazy_import.load(".work.frame_files").frames_of(plates.plate_of(image)).numbers
                 compositor.FrameTiming.by_number(frames, start=1).set_on(user)
+        if space.type == "IMAGE_EDITOR":
+            comparison.frame_view(context)
         return {"FINISHED"}
 
 
@@ -184,28 +185,6 @@ def _plate_of_baked(context: bpy.types.Context) -> plates.Datablock | None:
 def _is_image_editor(context: bpy.types.Context) -> bool:
     """Return whether an Image Editor is active."""
     return context.space_data is not None and context.space_data.type == "IMAGE_EDITOR"
-
-
-def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
-    """Show the linear plate of what an editor shows, by the stored response and the present exposure."""
-    settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
-    gray = settings.gray if settings.anchor == "GRAY" else None
-    stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
-    if comparison.show_again(space, key := _key(space.image, stops)):
-        return
-    if space.image_user.use_auto_refresh:  # Blender updates the frame while the editor shows the plate only
-        timing = compositor.FrameTiming.from_user(space.image_user)
-        space.image_user.frame_current = timing.number_on(bpy.context.scene.frame_current)
-    codes = comparison.code_values(space.image, space.image_user)
-    pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
-    comparison.begin(space, pixels, lazy_import.load(".scene.nodes.plate_group").linear_rec709(), key)
-
-
-def _key(plate: bpy.types.Image, stops: float) -> str:
-    """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
-    response = hash(stored_estimate.curve_and_band(plate).tobytes())
-    details = (response, stops, plates.alpha_mode(plate), stored_estimate.primaries(plate))
-    return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source == "FILE" else ""
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
