@@ -32,11 +32,11 @@ LIMITED_BLACK, LIMITED_WHITE, MARGIN = 16 / 255, 235 / 255, 3 / 255
 #: The largest fraction of samples outside, and the least fraction at either end.
 MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 
-#: The fraction of pixels with a luma beyond black and white, and between which codes these two lie after compression.
-BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
+#: The same of luma, of which a part as large as this of either end may lie beyond it, by the ringing of compression.
+LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
-MOST_ABOVE = 0.005
+MOST_ABOVE = 0.02
 
 _BAND = 2 * MARGIN + 1 / 255
 
@@ -67,11 +67,6 @@ class Levels:
             np.sum([each.luma / each.luma.sum() for each in levels], axis=0),
         )
 
-    def fraction(self, low: float, high: float) -> float:
-        """Return the fraction of the samples from one brightness to another, both included."""
-        first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
-        return float(self.histogram[max(first, 0) : last + 1].sum() / self.histogram.sum())
-
     @property
     def is_flat(self) -> bool:
         """Whether luma has no range to speak of, so that no response shows."""
@@ -99,26 +94,38 @@ def is_limited_range(levels: Levels) -> bool:
 
 
 def _has_ends(levels: Levels) -> bool:
-    """Return whether black and white lie near 16 and 235. JPEG compression blurs piles, and least of all in luma."""
-    black, white = quantile(levels.luma, BEYOND), quantile(levels.luma, 1 - BEYOND)
-    has_ends = BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
-    return has_ends and levels.fraction(LIMITED_WHITE + _BAND, 1) <= MOST_ABOVE
+    """Return whether hardly any luma lies beyond 16 and 235: JPEG compression blurs piles, and least of all in luma."""
+    below, dark, bright, above = _ends(levels.luma)
+    is_reached = min(dark, bright) >= LEAST_LUMA and _ends(levels.histogram)[-1] <= MOST_ABOVE
+    return is_reached and below <= MOST_RINGING * dark and above <= MOST_RINGING * bright
 
 
 def _has_piles(levels: Levels) -> bool:
     """Return whether hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one."""
-    below, above = levels.fraction(0, LIMITED_BLACK - _BAND / 2), levels.fraction(LIMITED_WHITE + _BAND / 2, 1)
-    dark, bright = (levels.fraction(end - MARGIN, end + MARGIN) for end in (LIMITED_BLACK, LIMITED_WHITE))
-    inside_dark = levels.fraction(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
-    inside_bright = levels.fraction(LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
+    below, dark, bright, above = _ends(levels.histogram)
+    inside_dark = fraction(levels.histogram, LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
+    inside_bright = fraction(levels.histogram, LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
     is_inside, is_reached = max(below, above) <= MOST_OUTSIDE, min(dark, bright) >= LEAST_AT_END
     return is_inside and is_reached and (dark > inside_dark or bright > inside_bright)
+
+
+def _ends(histogram: Float64Array) -> tuple[float, float, float, float]:
+    """Return the fractions of the samples below black, at black, at white and above white of limited range."""
+    black, white = LIMITED_BLACK, LIMITED_WHITE
+    dark, bright = (fraction(histogram, end - MARGIN, end + MARGIN) for end in (black, white))
+    return fraction(histogram, 0, black - _BAND / 2), dark, bright, fraction(histogram, white + _BAND / 2, 1)
 
 
 def _histogram(samples: Float32Array) -> Float64Array:
     """Return the number of samples at each code of 10 bits, shape (1024,)."""
     codes = np.rint(samples * np.float32(BINS - 1)).astype(np.uint16)
     return np.bincount(codes.ravel(), minlength=BINS).astype(np.float64)
+
+
+def fraction(histogram: Float64Array, low: float, high: float) -> float:
+    """Return the fraction of the samples from one brightness to another, both included."""
+    first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
+    return float(histogram[first : last + 1].sum() / histogram.sum())
 
 
 def quantile(histogram: Float64Array, fraction: float) -> float:
