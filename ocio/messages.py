@@ -25,7 +25,7 @@ SENTENCES: Mapping[str, str] = {
     " the largest, such as 255",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
     "exr_not_finite": "{path}: {count} of its pixels hold NaN or infinity, for which no LUT has an entry; replace them",
-    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
+    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; crop it, or keep R, G, B and A",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
@@ -41,7 +41,6 @@ SENTENCES: Mapping[str, str] = {
     " plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
-    "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
     " state the primaries of all",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",

@@ -214,19 +214,13 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
 
 
 def _with_boxes(header: Any, path: Path) -> Any:
-    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless they are compressed.
-
-    A codestream has no boxes.
-    """
-    with path.open("rb") as file:
-        if file.read(1) == b"\xff":
-            return header
-    segments = {"exif": b"", "xmp": b""}
-    for name, box in (("exif", b"Exif"), ("xmp", b"xml ")):
-        with suppress(ValueError):
-            segments[name] = find_box(path, box)
-    exif = segments["exif"]
-    header = with_segments(header, segments | {"exif": exif[4 + int.from_bytes(exif[:4]) :]})
+    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless compressed."""
+    segments = {}
+    with suppress(ValueError):  # of boxes that are too large or too far; a codestream has none
+        exif = find_box(path, b"Exif")
+        segments["exif"] = exif[4 + int.from_bytes(exif[:4]) :]
+        segments["xmp"] = find_box(path, b"xml ")
+    header = with_segments(header, segments)
     header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
     return header
 
