@@ -23,7 +23,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_codes": "{path}: most values lie above {most}; brightness lies in [0, 1]: divide code values by the largest",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
     "exr_not_finite": "{path}: {count} of its pixels hold NaN or infinity, for which no LUT has an entry; replace them",
-    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
+    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; crop it, or keep R, G, B and A",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether it is linear, as most EXR files; state it if its values are encoded",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
@@ -39,6 +39,8 @@ SENTENCES: Mapping[str, str] = {
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
     "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
+    "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
+    " state the primaries of all",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
     "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",

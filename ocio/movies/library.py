@@ -99,10 +99,7 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
 
 
 def _film(path: Path, container: InputContainer) -> Any:
-    """Return FFmpeg's best video stream, unless it is a cover, or another one has twice as many frames; None without.
-
-    FFmpeg prefers the stream that is marked as the default one, which a thumbnail may be.
-    """
+    """Return FFmpeg's best video stream, but neither a cover nor one of few frames next to a film; None without one."""
     import av
 
     cover = av.stream.Disposition.attached_pic

@@ -79,9 +79,8 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
 
 def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Iterator[tuple[int, Photo]]:
     """Yield the frame in the middle of each part, whatever it shows."""
-    is_empty = True
-    for number, photo in frames.photos(part[len(part) // 2] for part in parts if part):
-        is_empty = False
-        yield number, photo
-    if is_empty:
+    photos = frames.photos(part[len(part) // 2] for part in parts if part)
+    if (first := next(photos, None)) is None:
         raise undecodable(frames.movie.path, "none of its frames")
+    yield first
+    yield from photos

@@ -88,13 +88,12 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
     problem = oiio_message()
     if output is None:
         raise PlateError("exr_not_written", path=name, reason=first_line(problem))
-    is_written = output.open(str(path), header) and output.write_image(pixels)
-    is_closed = output.close()
+    if output.open(str(path), header):
+        output.write_image(pixels)
+    output.close()
     problem = oiio_message(output)
-    if problem or not (is_written and is_closed):
-        raise PlateError("exr_not_written", path=name, reason=first_line(problem))
-    if not is_whole(path, header):
-        raise PlateError("exr_not_written", path=name, reason="a part of it is missing")
+    if problem or not is_whole(path, header):
+        raise PlateError("exr_not_written", path=name, reason=first_line(problem or "a part of it is missing"))
 
 
 def is_whole(path: Path, header: Any) -> bool:

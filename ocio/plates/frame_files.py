@@ -164,9 +164,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     space = header.get_string_attribute("colorInteropID")
     if space.startswith("lin_"):
         raise PlateError("plate_is_linear", path=path, space=space)
-    if header.image_pixels() > MAX_PIXELS:
-        raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
-    if header.image_pixels() * header.nchannels > 4 * MAX_PIXELS:  # all are decompressed
+    if header.image_pixels() * max(header.nchannels, 4) > 4 * MAX_PIXELS:  # all are decompressed
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
     names = set(header.channelnames)

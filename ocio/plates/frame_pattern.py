@@ -53,11 +53,8 @@ class FramePattern:
     def files(self) -> dict[int, Path]:
         """Return the existing files by frame number; raise a PlateError if the folder cannot be listed."""
         named = re.compile(f"{re.escape(self.prefix)}(-?[0-9]{{1,18}}){re.escape(self.suffix)}")
-        matches = ((path, named.fullmatch(path.name)) for path in listed(self.folder))
-        numbered = {
-            int(match[1]): path for path, match in matches if match and self.path(int(match[1])).name == path.name
-        }
-        return {number: path for number, path in numbered.items() if path.is_file()}
+        numbers = {int(match[1]) for path in listed(self.folder) if (match := named.fullmatch(path.name))}
+        return {number: self.path(number) for number in numbers if self.path(number).is_file()}
 
 
 def listed(folder: Path) -> list[Path]:

@@ -71,13 +71,10 @@ def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tupl
 
 
 def identities(sequence: FrameSource) -> Callable[[int], str]:
-    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number.
-
-    A movie, which may have many gigabytes, is read meanwhile; its first name waits for the end.
-    """
+    """Return the names of plates by their content: SHA-256 of the file at a position; of a movie, and the number."""
     if isinstance(sequence, FrameSequence):
         return lambda position: file_sha256(sequence.paths[position])
-    movie = ThreadPoolExecutor(1).submit(file_sha256, sequence.paths[0])
+    movie = ThreadPoolExecutor(1).submit(file_sha256, sequence.paths[0])  # many gigabytes, read during the decoding
     return lambda position: f"{movie.result()} {sequence.numbers[position]}"
 
 

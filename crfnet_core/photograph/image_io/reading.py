@@ -35,18 +35,12 @@ from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo,
 #: Rows read at a time, and pages of a TIFF file that are searched for the largest.
 _ROWS, _MOST_PAGES = 256, 64
 
-#: Formats whose second or fourth channel is alpha, of which OpenImageIO does not say so.
-LAST_ALPHA_KINDS = ("JPEG 2000", "JPEG XL")
-
 #: Formats whose pixels alone show whether alpha is associated. DPX does not state it, and OpenImageIO drops the bit of
 #: JPEG XL, whose alpha is nearly always straight.
 UNSTATED_ALPHA_KINDS = ("DPX", "JPEG XL")
 
 #: By how much colors of straight alpha are above it in some pixels, as a part of white, and the least part of these.
 ABOVE_ALPHA, LEAST_ABOVE = 0.05, 0.002
-
-#: The formats that OpenImageIO's wheel does not read, or not all of.
-PILLOW_KINDS = ("HEIC", "AVIF", "BMP")
 
 
 def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
@@ -167,7 +161,7 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
         kind = file_kind(path)
-        if kind in PILLOW_KINDS:
+        if kind in ("HEIC", "AVIF", "BMP"):  # OpenImageIO's wheel does not read them, or not all of them
             yield read_pillow_file(path, kind)
         else:
             with _opened_kind(path, kind) as file:
@@ -196,7 +190,7 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
         if kind == "JPEG XL":
             header = _with_boxes(header, path)
-        if kind in LAST_ALPHA_KINDS:
+        if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
             header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
@@ -214,19 +208,13 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
 
 
 def _with_boxes(header: Any, path: Path) -> Any:
-    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless they are compressed.
-
-    A codestream has no boxes.
-    """
-    with path.open("rb") as file:
-        if file.read(1) == b"\xff":
-            return header
-    segments = {"exif": b"", "xmp": b""}
-    for name, box in (("exif", b"Exif"), ("xmp", b"xml ")):
-        with suppress(ValueError):
-            segments[name] = find_box(path, box)
-    exif = segments["exif"]
-    header = with_segments(header, segments | {"exif": exif[4 + int.from_bytes(exif[:4]) :]})
+    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless compressed."""
+    segments = {}
+    with suppress(ValueError):  # of boxes that are too large or too far; a codestream has none
+        exif = find_box(path, b"Exif")
+        segments["exif"] = exif[4 + int.from_bytes(exif[:4]) :]
+        segments["xmp"] = find_box(path, b"xml ")
+    header = with_segments(header, segments)
     header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
     return header
 

@@ -25,20 +25,17 @@ BINS, MOST_SAMPLES, ROWS = 1024, 3_000_000, 64
 #: 16 bits whose codes end where 12 bits do have it.
 FLAT_RANGE = 16.5 / 255
 
-#: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness, and how far around them
-#: samples count as black or white.
-LIMITED_BLACK, LIMITED_WHITE, MARGIN = 16 / 255, 235 / 255, 3 / 255
+#: Codes of 8 bits beyond black of limited range (16, ITU-R BT.709, item 6), near it and next to it; the same of white.
+BLACK_BANDS, WHITE_BANDS = ((0, 12.5), (13, 19), (19.5, 26.5)), ((238.5, 255), (232, 238), (224.5, 231.5))
 
-#: The largest fraction of samples outside, and the least fraction at either end.
+#: The largest fraction of samples beyond either, and the least fraction near it.
 MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 
-#: The fraction of pixels with a luma beyond black and white, and between which codes these two lie after compression.
-BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
+#: The least fraction of luma near either, of which a part as large as this may lie beyond, by ringing of compression.
+LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
-MOST_ABOVE = 0.005
-
-_BAND = 2 * MARGIN + 1 / 255
+MOST_ABOVE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +64,6 @@ class Levels:
             np.sum([each.luma / each.luma.sum() for each in levels], axis=0),
         )
 
-    def fraction(self, low: float, high: float) -> float:
-        """Return the fraction of the samples from one brightness to another, both included."""
-        first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
-        return float(self.histogram[max(first, 0) : last + 1].sum() / self.histogram.sum())
-
     @property
     def is_flat(self) -> bool:
         """Whether luma has no range to speak of, so that no response shows."""
@@ -99,20 +91,23 @@ def is_limited_range(levels: Levels) -> bool:
 
 
 def _has_ends(levels: Levels) -> bool:
-    """Return whether black and white lie near 16 and 235. JPEG compression blurs piles, and least of all in luma."""
-    black, white = quantile(levels.luma, BEYOND), quantile(levels.luma, 1 - BEYOND)
-    has_ends = BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
-    return has_ends and levels.fraction(LIMITED_WHITE + _BAND, 1) <= MOST_ABOVE
+    """Return whether hardly any luma lies beyond 16 and 235: JPEG compression blurs piles, and least of all in luma."""
+    ends = [_fractions(levels.luma, bands) for bands in (BLACK_BANDS, WHITE_BANDS)]
+    is_reached = all(near >= LEAST_LUMA and beyond <= MOST_RINGING * near for beyond, near, _ in ends)
+    return is_reached and _fractions(levels.histogram, WHITE_BANDS)[0] <= MOST_ABOVE
 
 
 def _has_piles(levels: Levels) -> bool:
     """Return whether hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one."""
-    below, above = levels.fraction(0, LIMITED_BLACK - _BAND / 2), levels.fraction(LIMITED_WHITE + _BAND / 2, 1)
-    dark, bright = (levels.fraction(end - MARGIN, end + MARGIN) for end in (LIMITED_BLACK, LIMITED_WHITE))
-    inside_dark = levels.fraction(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
-    inside_bright = levels.fraction(LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
-    is_inside, is_reached = max(below, above) <= MOST_OUTSIDE, min(dark, bright) >= LEAST_AT_END
-    return is_inside and is_reached and (dark > inside_dark or bright > inside_bright)
+    ends = [_fractions(levels.histogram, bands) for bands in (BLACK_BANDS, WHITE_BANDS)]
+    is_reached = all(near >= LEAST_AT_END and beyond <= MOST_OUTSIDE for beyond, near, _ in ends)
+    return is_reached and any(near > inside for _, near, inside in ends)
+
+
+def _fractions(histogram: Float64Array, bands: tuple[tuple[float, float], ...]) -> list[float]:
+    """Return the fraction of the samples in each band of codes, whose ends are included."""
+    bins = [slice(round(low / 255 * (BINS - 1)), round(high / 255 * (BINS - 1)) + 1) for low, high in bands]
+    return [float(histogram[each].sum() / histogram.sum()) for each in bins]
 
 
 def _histogram(samples: Float32Array) -> Float64Array:
