@@ -5,14 +5,12 @@ import json
 import sys
 from pathlib import Path
 
-import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet import pipeline
 from crfnet.cli.main import main
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet.options import EstimateOptions, OutputOptions, PlateOptions
@@ -75,13 +73,6 @@ class TestExport:
         files = OutputFiles.named(folder, [Path("plate.png")], outputs)
         space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
         return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), space)
-
-    def test_writes_the_lut_in_three_formats_and_a_config(self, plan):
-        written = pipeline.deliver(plan, light_of(LUT, exposure=1))
-        assert [path.name for path in written] == ["plate.spi1d", "plate.cube", "plate.clf", "config.ocio"]
-        assert all(read_lut(path) == LUT for path in written[:3])
-        config = OCIO.Config.CreateFromFile(str(plan.files.config))
-        assert config.getColorSpaceFromFilepath("plate.0001.png")[0] == "CRF plate"
 
     def test_a_failure_in_the_middle_leaves_earlier_files_as_they_were(self, plan, tmp_path, monkeypatch):
         earlier = {path: path.read_bytes() for path in pipeline.deliver(plan, light_of(LUT))}

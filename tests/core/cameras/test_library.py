@@ -82,8 +82,7 @@ CHANGES = (
     {"shape_stops": -1},
     {"scale_stops": 1e9},
     {"scale_stops": True},
-    {"iso": [0]},
-    {"iso": 5},
+    *({"iso": iso} for iso in ([0], 5)),
     {"warnings": 5},
 )
 

@@ -124,7 +124,7 @@ BAD = [
     ("lut_suffix", "camera export measured a.xyz"),
     ("no_camera", "estimate IMG_0.jpg --out look --camera nobody"),
     ("no_camera", "estimate IMG_0.jpg --each --out look --camera nobody"),
-    ("no_camera", "linearize IMG_0.jpg --out a.exr --camera nobody"),
+    ("no_camera", "linearize IMG_0.jpg --each --out a.exr --camera nobody"),
     ("two_responses", "linearize IMG_0.jpg --out a.exr --camera measured --lut a.spi1d"),
     ("usage", "camera"),
 ]

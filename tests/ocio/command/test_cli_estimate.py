@@ -38,11 +38,6 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
     assert found["color_space"] == "CRF plate"
 
 
-def test_metadata_is_ignored_when_asked(estimate, plate):
-    found = json.loads(estimate(plate, "--ignore-metadata", "--json").out)["estimates"][0]
-    assert found["metadata"] == []
-
-
 @pytest.mark.parametrize("name", ["any", "mine.json"])
 def test_the_prior_can_be_chosen(estimate, plate, tmp_path, name):
     own = tmp_path / "mine.json"

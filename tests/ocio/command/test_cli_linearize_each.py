@@ -69,6 +69,8 @@ def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tm
     assert linearize(*arguments).code == 0
     assert (tmp_path / "out" / "a.exr").stat().st_mtime_ns == before
     assert len(records_in(tmp_path / "out")) == 3
+    (photographs / "a.jpg").unlink()
+    assert f"{photographs / 'a.jpg'}: does not exist" in linearize(photographs / "a.jpg", *arguments[1:]).err
 
 
 def test_a_recorded_file_that_was_cut_since_is_refused(linearize, photographs, look, tmp_path):
@@ -77,13 +79,6 @@ def test_a_recorded_file_that_was_cut_since_is_refused(linearize, photographs, l
     os.truncate(tmp_path / "out" / "b.exr", 3000)
     done = linearize(photographs, "--lut", look / "plate.spi1d")
     assert (done.refusal, "1 of 3 photographs failed" in done.err) == ("photographs_failed", True)
-
-
-def test_another_response_is_refused(linearize, photographs, look, tmp_path):
-    linearize(photographs, "--lut", look / "plate.spi1d")
-    before = tree(tmp_path / "out")
-    assert linearize(photographs).refusal == "other_options"
-    assert tree(tmp_path / "out") == before
 
 
 def test_a_lut_that_has_changed_is_read_again(linearize, photographs, look, tmp_path):
@@ -141,22 +136,3 @@ def test_a_photograph_that_has_changed_fails_alone_until_its_files_are_deleted(
     for path in (tmp_path / "out").glob("b.*"):
         path.unlink()
     assert (run().code, run().out.count("left alone")) == (0, 3)
-
-
-def test_json(linearize, photographs, look, tmp_path):
-    done = linearize(photographs, "--lut", look / "plate.spi1d", "--json")
-    assert json.loads(done.out) == {"folder": str(tmp_path / "out"), "photographs": records_in(tmp_path / "out")}
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (("--each", "--frames", "1-2"), "frames_of_each"),
-        (("--each", "--lut", "absent.spi1d"), "lut_unreadable"),
-        (("--each", "--camera", "nobody's"), "no_camera"),
-        (("more.jpg",), "several_plates"),
-    ],
-)
-def test_refusals(crfnet, plate, tmp_path, arguments, code):
-    assert crfnet("linearize", plate, *arguments, "--out", tmp_path / "out.exr").refusal == code
-    assert not (tmp_path / "out.exr").exists()

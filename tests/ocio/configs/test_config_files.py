@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -51,12 +52,6 @@ class TestWriting:
         back = converted(written, "scene_linear", "CRF a", linear)
         np.testing.assert_allclose(LUT.apply(back), LUT.apply(values), atol=tolerance.plate)
 
-    def test_the_folder_can_be_moved(self, folder, tmp_path_factory):
-        write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
-        moved = Path(shutil.move(folder, tmp_path_factory.mktemp("moved") / "elsewhere"))
-        result = converted(loaded(moved / "config.ocio"), "CRF plate01", "scene_linear", [[0.5, 1, 1.125]])
-        np.testing.assert_allclose(result[0], LUT.apply(np.float32([0.5, 1, 1.125])), atol=1e-6)
-
     def test_it_is_replaced_only_when_asked(self, folder):
         path = folder / "config.ocio"
         path.write_text("mine")
@@ -96,15 +91,12 @@ class TestLoading:
     def test_a_lut_that_is_a_device_is_refused(self, folder, direction):
         """OpenColorIO would read a device without end, and wait for the writer of a pipe."""
         path = folder / "config.ocio"
-        for source, code in (("absent.spi1d", None), (os.devnull, "config_reads_device")):
+        for source in ("absent.spi1d", os.devnull):
             config = portable_config([SPACE])
             steps = OCIO.GroupTransform([OCIO.FileTransform(source)])
             config.addColorSpace(OCIO.ColorSpace(name="lut", **{direction: steps}))
             path.write_text(config.serialize())
-            if code:
-                with refused(ConfigError, code):
-                    load_config(path)
-            else:
+            with refused(ConfigError, "config_reads_device") if source == os.devnull else nullcontext():
                 load_config(path)
 
     @pytest.mark.parametrize(

@@ -63,10 +63,6 @@ def test_the_texts_are_the_expected_ones(tmp_path):
     assert len(list(tmp_path.iterdir())) == len(WRITERS)
 
 
-def test_a_cube_leaves_the_usual_domain_out():
-    assert WRITERS[".cube"](Lut1D([0, 1])) == "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"
-
-
 def test_the_identity_depends_on_the_table_and_the_domain_alone():
     assert lut_identity(LUT) == lut_identity(Lut1D(LUT.values, LUT.domain))
     different = (LUT, Lut1D(LUT.values), Lut1D(LUT.values * 2, LUT.domain))

@@ -11,7 +11,7 @@ from crfnet.errors import LutError
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.forward import LENGTHS, forward_lut, round_trip_error
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from crfnet.luts.rgb_lut import RgbLut1D, lut_of_columns
+from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import through_lut
@@ -92,9 +92,6 @@ class TestRgbLut:
         forward = forward_lut(rgb_lut)
         assert [channel.domain for channel in forward.channels] == [(0, 1)] * 3
         assert round_trip_error(rgb_lut, forward, bits=10) < 0.1
-
-    def test_equal_columns_are_one_table(self):
-        assert lut_of_columns([[0, 0, 0], [1, 1, 1]]) == Lut1D([0, 1])
 
     def test_tables_that_differ_in_shape_are_refused(self):
         for channels in ((Lut1D([0, 1]), Lut1D([0, 1])), (Lut1D([0, 1]), Lut1D([0, 1]), Lut1D([0, 0.5, 1]))):

@@ -91,9 +91,3 @@ def test_a_file_is_replaced_only_when_asked(tmp_path, suffix):
     assert path.read_text() == "mine"
     write_lut(path, Lut1D([0, 1]), overwrite=True)
     assert read_lut(str(path)) == Lut1D([0, 1])
-
-
-@pytest.mark.parametrize("name", ["a.3dl", "a", "a.spi3d"])
-def test_other_suffixes_are_not_written(tmp_path, name):
-    with refused(LutError, "lut_suffix"):
-        write_lut(tmp_path / name, Lut1D([0, 1]))
