@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,14 +43,6 @@ BIN, BLOCKS = 0.2, 650
 LEAST_SAMPLES = 200
 
 
-class BlockMeans(NamedTuple):
-    """Means over the blocks of one frame, each of shape (N, 3): brightness, its spread over cells, white fraction."""
-
-    brightness: Float64Array
-    spread: Float64Array
-    white: Float64Array
-
-
 @dataclass(frozen=True, eq=False)
 class Observations:
     """The brightness of M samples (a block in one channel) in T frames."""
@@ -78,40 +70,34 @@ class Observations:
         return Observations(**{**vars(self), **cut})
 
 
-def block_means(codes: CodeArray, white: float) -> BlockMeans:
-    """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
+def block_means(codes: CodeArray, white: float) -> Float64Array:
+    """Return brightness, its spread over cells, and the white fraction of the blocks of a frame: (3, N, 3).
+
+    `codes` are of shape (H, W, 3), `white` is the code of white. The blocks come row by row.
+    """
     cell = max(1, round(max(codes.shape) / (CELLS * BLOCKS_ACROSS)))  # so small pictures have fewer blocks
     cells = squares(_means(codes, cell) / white, CELLS)
     is_white = codes >= white * (1 - WHITE_MARGIN / 255)
-    return BlockMeans(
-        brightness=np.minimum(cells.mean(axis=WITHIN), 1).reshape(-1, 3),
-        spread=cells.std(axis=WITHIN).reshape(-1, 3),
-        white=_means(is_white, CELLS * cell).reshape(-1, 3),
-    )
+    parts = np.minimum(cells.mean(axis=WITHIN), 1), cells.std(axis=WITHIN), _means(is_white, CELLS * cell)
+    return np.stack(parts).reshape(3, -1, 3)
 
 
-def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
-    """Return every sample of every block, channel after channel; one channel only if gray."""
-    channels = 1 if is_gray else 3
-    brightness, spread, white = (
-        np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)
-    )  # (N, C, T)
+def observe(frames: Sequence[Float64Array], *, is_gray: bool) -> Observations:
+    """Return every sample of every block, channel after channel, given `block_means`; one channel only if gray."""
+    brightness, spread, white = np.stack(frames, axis=-1)[:, :, : 1 if is_gray else 3]  # (N, C, T)
     is_used = (white <= PARTLY_WHITE) & (brightness * 255 >= DARKEST_CODE)
-    deviation = np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread)
-    deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
+    dark = 1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2
     chroma = np.ptp(brightness, axis=1, keepdims=True) / np.maximum(brightness.max(axis=1, keepdims=True), 1 / 255)
     has_clipped = (white > PARTLY_WHITE).any(axis=1, keepdims=True) & is_used
-    deviation = deviation * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOR, 1)
-    count = is_used.sum(axis=2)
-    typical = np.where(count > 0, (spread * is_used).sum(axis=2) / np.maximum(count, 1), np.inf)
-    blocks, frame_count = len(brightness), brightness.shape[2]
-    flat = (blocks * channels, frame_count)
+    uncertain = dark * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOR, 1)
+    blocks, channels, count = brightness.shape
+    flat = (blocks * channels, count)
     return Observations(
         brightness=brightness.reshape(flat),
-        deviation=deviation.reshape(flat),
+        deviation=(np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread) * uncertain).reshape(flat),
         is_used=is_used.reshape(flat),
         white_fraction=white.reshape(flat),
-        spread=typical.ravel(),
+        spread=((spread * is_used).sum(axis=2) / np.maximum(is_used.sum(axis=2), 1)).ravel(),
         block=np.repeat(np.arange(blocks), channels),
         channel=np.tile(np.arange(channels), blocks),
     )

@@ -9,6 +9,7 @@ from crfnet_core.calibration.blocks import Observations, members_of_bins
 from crfnet_core.calibration.curve_model import in_camera_responses
 from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
+from crfnet_core.calibration.measured import FrameReport
 from crfnet_core.calibration.measurement import Measurement
 from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.errors import CalibrationError, Notice, beside_limits
@@ -64,20 +65,19 @@ def check_seen(brightness: Float64Array) -> None:
         raise CalibrationError("codes_unseen", part=part, first=FIRST_SHAPE_CODE, last=LAST_SHAPE_CODE)
 
 
-def check_measurement(measurement: Measurement, used: Sequence[str], left_out: Sequence[str], *, white: float) -> None:
-    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response.
-
-    `used` and `left_out` are the names of frames.
-    """
+def check_measurement(measurement: Measurement, frames: Sequence[FrameReport], *, white: float) -> None:
+    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response."""
+    left_out = ", ".join(frame.path.name for frame in frames if not frame.is_used)
     residual = white * rms_codes(measurement.fit.residual)
     is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
     if is_moved or (residual > MOST_RESIDUAL and scatter(measurement.seen, measurement.exposures) > MOST_SCATTER):
-        raise CalibrationError("scene_moved", which=f"{', '.join(left_out)} and more" if left_out else "some blocks")
+        raise CalibrationError("scene_moved", which=f"{left_out} and more" if left_out else "some blocks")
     offsets = off_trend(measurement)
     worst = int(np.abs(offsets).argmax())
     if abs(offsets[worst]) > MOST_OFFSET:
+        path = [frame.path.name for frame in frames if frame.is_used][worst]
         direction = "brighter" if offsets[worst] > 0 else "darker"
-        raise CalibrationError("frame_mistimed", path=used[worst], stops=abs(offsets[worst]), direction=direction)
+        raise CalibrationError("frame_mistimed", path=path, stops=abs(offsets[worst]), direction=direction)
     if residual > MOST_RESIDUAL:
         raise CalibrationError("no_single_curve", residual=beside_limits(residual, MOST_RESIDUAL), most=MOST_RESIDUAL)
     if (distance := nearest_known(measurement.curve)) > MOST_UNKNOWN and measurement.anchor.is_seen:
@@ -85,10 +85,11 @@ def check_measurement(measurement: Measurement, used: Sequence[str], left_out: S
 
 
 def notices_of(
-    measurement: Measurement, used: Sequence[str], left_out: Sequence[str], exposures: Exposures, *, white: float
+    measurement: Measurement, frames: Sequence[FrameReport], exposures: Exposures, *, white: float
 ) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    notices = [Notice("frame_unfit", {"name": name}) for name in left_out]
+    notices = [Notice("frame_unfit", {"name": frame.path.name}) for frame in frames if not frame.is_used]
+    used = [frame.path.name for frame in frames if frame.is_used]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
     notices += [Notice("frame_off", {"name": name, "off": off}) for name, off in offsets if abs(off) > NOTABLE_OFFSET]
     if exposures.differing:

@@ -113,14 +113,14 @@ def fit_and_anchor(
     found = []
     for _ in range(rounds):
         fit = fit_stack(seen, exposures, start)
-        anchor = find_white(seen, exposures, fit)
+        anchor = find_white(seen, fit)
         curve = fit.response(log_white=anchor.log_white)
         start = CurveModel.load().weights_of(curve)
         found.append(Measurement(seen, exposures, np.ones(len(exposures), dtype=bool), fit, anchor, curve, 0.0))
     return min(found, key=lambda measurement: measurement.fit.cost)
 
 
-def find_white(seen: Observations, exposures: Float64Array, fit: StackFit) -> Anchor:
+def find_white(seen: Observations, fit: StackFit) -> Anchor:
     """Return where white is.
 
     Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
@@ -132,12 +132,11 @@ def find_white(seen: Observations, exposures: Float64Array, fit: StackFit) -> An
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
-    irradiance = np.exp2(fit.log_inverse(codes / 255))
+    irradiance = np.exp2(CurveModel.load().log_irradiance(fit.weights, codes / 255))
     parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
     parabolic = float(np.log2(max(parabola, irradiance[-1])))
-    crossing, blur = _crossing(seen, fit.exposed(exposures, seen))
-    before = float(fit.log_inverse(np.array([LINE_FROM / 255]))[0])
-    per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
+    crossing, blur = _crossing(seen, fit.log_light)
+    per_code = max(np.exp2(crossing) - irradiance[LINE_FROM - PARABOLA_FROM], 0) / (WHITE_CODE - LINE_FROM)
     crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
     parts = (LEAST_DEVIATION, (crossed - parabolic) / 2, blur / 2, crossed - crossing)
     return Anchor((2 * crossed + parabolic) / 3 - blur, float(np.linalg.norm(parts)), is_seen=True)

@@ -42,7 +42,7 @@ SEED = 0
 class Cells:
     """N cells of one pair or several."""
 
-    light: Float64Array  # (N, 3): raw, balanced
+    light: Float64Array  # (N, 3): raw, balanced; once shots are joined, a white surface saturates at 1
     codes: Float64Array  # (N, 3): mean code, in 8 bits
     deviation: Float64Array  # (N, 3): expected standard deviation of the same
     is_open: BoolArray  # (N, 3): whether no pixel is clipped

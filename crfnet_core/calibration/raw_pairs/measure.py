@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -79,8 +80,7 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
-    saturation = float(np.median([pair.raw.balance.min() for pair in pairs]))  # balanced light of a white surface
-    cells, fit, basis = _measured(pairs, saturation)
+    cells, fit, basis = _measured(pairs)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
     low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
@@ -89,7 +89,7 @@ def measure_pairs(
     return PairCalibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=_uncertainty(cells, fit, curve, basis, saturation),
+        uncertainty=_uncertainty(cells, fit, curve, basis),
         residual=rms_codes(fit.residual),
         metadata=pairs[0].metadata,
         points=_points(cells, fit, counted),
@@ -104,22 +104,24 @@ def measure_pairs(
     )
 
 
-def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit, WhiteBasis]:
+def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
     """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
     curve, fit = in_camera_mean(), None
+    saturation = np.median([pair.raw.balance.min() for pair in pairs])  # balanced light of a white surface
     for _ in range(ROUNDS):
         inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
         cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
+        cells = replace(cells, light=cells.light / saturation)
         _check_counts(pairs, (cells.is_open.all(axis=1) & ~cells.is_saturated) @ cells.shot)
         top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
         if top < LEAST_TOP:
             raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
-        fit = fit_pairs(cells, saturation, fit)
+        fit = fit_pairs(cells, fit)
         curve = fit.response()
     assert fit is not None
     basis = _white_basis(cells, fit)
     if basis == WhiteBasis.RAW_CLIP:
-        fit = fit_pairs(cells, saturation, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
+        fit = fit_pairs(cells, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
     return cells, fit, basis
 
 
@@ -144,9 +146,9 @@ def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
     return WhiteBasis.EXTRAPOLATED if top > SEEN_TOP else WhiteBasis.BRACKETED
 
 
-def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis, saturation: float) -> Uncertainty:
+def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis) -> Uncertainty:
     """Return how far a response may be off: the posterior, what halves of the pictures say, and white."""
-    halves = [fit_pairs(cells.subset(cells.tile == half), saturation, fit).response() for half in (0, 1)]
+    halves = [fit_pairs(cells.subset(cells.tile == half), fit).response() for half in (0, 1)]
     codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
     shape, scale = fit.deviations(codes)
     channels, white = CHANNEL_PART * _between_channels(cells, fit), WHITE_DEVIATIONS[basis]

@@ -39,10 +39,10 @@ def test_blocks_hold_means_spread_and_white():
     """One block of 4 x 4 pixels: half at 100, half at 255, so mean 177.5, spread 77.5, half white; green is flat."""
     codes = np.full((4, 4, 3), 51, np.uint8)
     codes[:2, :, 0], codes[2:, :, 0] = 100, 255
-    means = block_means(codes, 255)
-    np.testing.assert_allclose(means.brightness[0] * 255, [177.5, 51, 51])
-    np.testing.assert_allclose(means.spread[0] * 255, [77.5, 0, 0], atol=1e-9)
-    np.testing.assert_allclose(means.white[0], [0.5, 0, 0])
+    (brightness,), (spread,), (white,) = block_means(codes, 255)
+    np.testing.assert_allclose(brightness * 255, [177.5, 51, 51])
+    np.testing.assert_allclose(spread * 255, [77.5, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(white, [0.5, 0, 0])
 
 
 def test_partly_white_and_nearly_black_blocks_do_not_count():
