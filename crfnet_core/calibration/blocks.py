@@ -110,30 +110,20 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observation
     than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
     """
     channels = int(seen.channel.max()) + 1
-    levels = log_irradiance.reshape(-1, channels)
+    levels, spread = log_irradiance.reshape(-1, channels), seen.spread.reshape(-1, channels)
     is_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels)
-    _check_often(is_often)
+    if (count := channels * int(is_often.all(axis=1).sum())) < LEAST_SAMPLES:
+        is_poor = channels * is_often.sum(axis=0) < LEAST_SAMPLES
+        poor = " and ".join(np.array(["red", "green", "blue"])[:channels][is_poor])
+        if poor and not is_poor.all():
+            raise CalibrationError("dark_channel", count=count, least=LEAST_SAMPLES, channels=poor)
+        raise CalibrationError("few_flat_places", count=count, least=LEAST_SAMPLES)
     fit = np.flatnonzero(is_often.all(axis=1) & np.isfinite(levels).all(axis=1))
-    color = np.ptp(levels[fit], axis=1)
-    rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + color)
-    bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
-    parts = members_of_bins(bins, rank)
+    rank = spread[fit].mean(axis=1) * (1 + np.ptp(levels[fit], axis=1))
+    parts = members_of_bins(np.floor(levels[fit].mean(axis=1) / BIN), rank)
     places = np.concatenate([np.arange(len(part)) for part in parts])
     picked = np.concatenate(parts)[places.argsort(kind="stable")[:BLOCKS]]
     return seen.subset(np.isin(seen.block, fit[picked]))
-
-
-def _check_often(is_often: BoolArray) -> None:
-    """Refuse a stack that shows too few blocks in two frames, given which each channel does, shape (N, C)."""
-    channels = is_often.shape[1]
-    samples = channels * int(is_often.all(axis=1).sum())
-    if samples >= LEAST_SAMPLES:
-        return
-    each = channels * is_often.sum(axis=0)
-    poor = [name for name, count in zip(("red", "green", "blue"), each, strict=False) if count < LEAST_SAMPLES]
-    if 0 < len(poor) < channels:
-        raise CalibrationError("dark_channel", count=samples, least=LEAST_SAMPLES, channels=" and ".join(poor))
-    raise CalibrationError("few_flat_places", count=samples, least=LEAST_SAMPLES)
 
 
 def members_of_bins(bins: NDArray[Any], rank: Float64Array) -> list[IndexArray]:

@@ -98,8 +98,7 @@ def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
 def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:
     """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
     nominal = {"nominal": exposures.nominal}
-    is_phone = device_of(first.metadata.make, first.metadata.model) is Device.PHONE
-    if exposures.snapped is None or is_phone:
+    if exposures.snapped is None or device_of(first.metadata.make, first.metadata.model) is Device.PHONE:
         return nominal
     snapped = {"exact powers of two": exposures.snapped}
     is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS

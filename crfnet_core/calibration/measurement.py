@@ -1,10 +1,6 @@
-"""From observations to an anchored response, and how far it may be off.
+"""From observations to a response whose scale is where codes reach white (Eq. C.3), and how far it may be off."""
 
-Start, fit, and the irradiance at which the codes reach white, which sets the scale of the response (Eq. C.3). Frames
-and samples that do not fit are left out. The uncertainty is in stops, of the shape and of the scale (Eq. C.4 and C.5).
-"""
-
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -69,17 +65,15 @@ class Measurement:
 
     seen: Observations  # the samples that were used, in the frames that were used
     exposures: Float64Array  # (T,): the labels of these frames, in stops
-    frames: BoolArray  # (all frames,): which frames these are
     fit: StackFit  # its unit of irradiance is white but for `anchor`
     anchor: Anchor  # where white is in that unit
     curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
-    outliers: float  # fraction of the samples that were left out
+    frames: BoolArray  # (all frames,): which frames were used
+    outliers: float = 0.0  # fraction of the samples that were left out
 
 
 def measure(every: Observations, exposures: Float64Array) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
-
-    `exposures` are the labels in stops, shape (T,).
 
     Raise CalibrationError if too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans
     too few stops.
@@ -116,7 +110,7 @@ def fit_and_anchor(
         anchor = find_white(seen, fit)
         curve = fit.response(log_white=anchor.log_white)
         start = CurveModel.load().weights_of(curve)
-        found.append(Measurement(seen, exposures, np.ones(len(exposures), dtype=bool), fit, anchor, curve, 0.0))
+        found.append(Measurement(seen, exposures, fit, anchor, curve, frames=np.ones(len(exposures), dtype=bool)))
     return min(found, key=lambda measurement: measurement.fit.cost)
 
 
@@ -172,27 +166,27 @@ def _worst_frame(fit: StackFit) -> int | None:
 
 
 def uncertainty_of(measurement: Measurement, other_labels: ResponseCurve | None, *, white: float) -> Uncertainty:
-    """Return how far a measured response may be off, at the codes of the file.
+    """Return how far a measured response may be off, at the codes of the file (Eq. C.4 and C.5).
 
-    `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
-    exposure labels, if there is one.
+    `white` is as in `Calibration`, `other_labels` the response by the other reading of the exposure labels, if any.
     """
     even = measurement.seen.block % 2 == 0
-    parts = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
+    halves = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
     alone = []
     for channel, offsets in enumerate(measurement.fit.offsets.T):  # the exposures that all channels found for it
         part = measurement.seen.subset(measurement.seen.channel == channel)
         gray = replace(part, channel=np.zeros_like(part.channel))
         alone.append(_curve_of(gray, measurement.exposures + offsets, measurement))
-    others = [] if other_labels is None else [other_labels]
-    curve, first, second = (in_file_codes(each, white) for each in (measurement.curve, *parts))
+    curve, other, first, second, *channels = (
+        in_file_codes(each, white) for each in (measurement.curve, other_labels or measurement.curve, *halves, *alone)
+    )
 
     def disagreements(error: Callable[[ResponseCurve, ResponseCurve], float]) -> dict[str, float]:
         """Return how far responses are apart that should be one."""
         return {
             "sampling": abs(error(first, second)) / 2,
-            "channels": CHANNEL_PART * _rms([error(curve, in_file_codes(each, white)) for each in alone]),
-            "labels": 0.5 * _rms([error(curve, in_file_codes(each, white)) for each in others]),
+            "channels": CHANNEL_PART * float(np.sqrt(np.mean([error(curve, each) ** 2 for each in channels]))),
+            "labels": abs(error(curve, other)) / 2,
         }
 
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
@@ -210,8 +204,3 @@ def _curve_of(seen: Observations, exposures: Float64Array, measurement: Measurem
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
     return fit_and_anchor(seen, exposures, measurement.fit.weights, rounds=1).curve
-
-
-def _rms(values: Sequence[float]) -> float:
-    """Return the root mean square, 0 of nothing."""
-    return float(np.linalg.norm(values) / np.sqrt(max(len(values), 1)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -149,19 +150,12 @@ def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
 def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis) -> Uncertainty:
     """Return how far a response may be off: the posterior, what halves of the pictures say, and white."""
     halves = [fit_pairs(cells.subset(cells.tile == half), fit).response() for half in (0, 1)]
-    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
-    shape, scale = fit.deviations(codes)
-    channels, white = CHANNEL_PART * _between_channels(cells, fit), WHITE_DEVIATIONS[basis]
-    end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0])) / 2
+    shape, scale = fit.deviations(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255)
+    channels, apart = CHANNEL_PART * _between_channels(cells, fit), abs(scale_error(*halves)) / 2
+    white, end = WHITE_DEVIATIONS[basis], -math.log2(curve.inverse(1 - 3 / 255)) / 2
     return Uncertainty(
         {"posterior": shape, "sampling": shape_error(*halves) / 2, "channels": channels, "least": LEAST_SHAPE},
-        {
-            "posterior": scale,
-            "sampling": abs(scale_error(*halves)) / 2,
-            "white": white,
-            "end": end,
-            "least": LEAST_SCALE,
-        },
+        {"posterior": scale, "sampling": apart, "white": white, "end": end, "least": LEAST_SCALE},
     )
 
 
@@ -225,7 +219,5 @@ def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
     """Return `PairCalibration.points`."""
     chroma = np.ptp(cells.codes, axis=1) / np.maximum(cells.codes.max(axis=1), 1)
     per_cell = (cells.shot.argmax(axis=1), np.hypot(*cells.place.T), chroma, cells.surroundings)
-    columns = [fit.log_light, cells.codes / 255, fit.residual]
-    columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
-    columns.append(np.broadcast_to(np.arange(3), counted.shape))
-    return np.stack([column[counted] for column in columns], axis=1)
+    columns = [fit.log_light, cells.codes / 255, fit.residual, *(column[:, None] for column in per_cell), np.arange(3)]
+    return np.stack([np.broadcast_to(column, counted.shape)[counted] for column in columns], axis=1)
