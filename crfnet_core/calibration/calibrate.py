@@ -91,8 +91,9 @@ def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
     """Return the frames with stated times."""
     if len(seconds) != len(frames):
         raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
-    labels = [replace(frame.label, seconds=time) for frame, time in zip(frames, seconds, strict=True)]
-    return [replace(frame, label=label) for frame, label in zip(frames, labels, strict=True)]
+    return [
+        replace(frame, label=replace(frame.label, seconds=time)) for frame, time in zip(frames, seconds, strict=True)
+    ]
 
 
 def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:

@@ -88,24 +88,21 @@ def notices_of(
     measurement: Measurement, frames: Sequence[FrameReport], exposures: Exposures, *, white: float
 ) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    notices = [Notice("frame_unfit", {"name": frame.path.name}) for frame in frames if not frame.is_used]
     used = [frame.path.name for frame in frames if frame.is_used]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
-    notices += [Notice("frame_off", {"name": name, "off": off}) for name, off in offsets if abs(off) > NOTABLE_OFFSET]
-    if exposures.differing:
-        notices.append(Notice("settings_differ", {"settings": " and ".join(exposures.differing)}))
-    if (distance := nearest_known(measurement.curve, in_camera=True)) > MOST_UNKNOWN:
-        notices.append(Notice("unlike_cameras", {"distance": distance}))
     highest = 255 * float(measurement.seen.brightness[measurement.seen.is_used].max())  # white = 255
-    if highest < LAST_SHAPE_CODE:
-        notices.append(Notice("codes_above_unseen", {"highest": white * highest}))
-    if not measurement.anchor.is_seen:
-        notices.append(Notice("white_unseen"))
-    if measurement.outliers > NOTABLE_OUTLIERS:
-        notices.append(Notice("blocks_left_out", {"part": measurement.outliers}))
-    if white < 1:
-        notices.append(Notice("white_below_largest", {"code": 255 * white}))
-    return tuple(notices)
+    distance, part = nearest_known(measurement.curve, in_camera=True), measurement.outliers
+    doubts = [
+        *(("frame_unfit", {"name": frame.path.name}, not frame.is_used) for frame in frames),
+        *(("frame_off", {"name": name, "off": off}, abs(off) > NOTABLE_OFFSET) for name, off in offsets),
+        ("settings_differ", {"settings": " and ".join(exposures.differing)}, exposures.differing),
+        ("unlike_cameras", {"distance": distance}, distance > MOST_UNKNOWN),
+        ("codes_above_unseen", {"highest": white * highest}, highest < LAST_SHAPE_CODE),
+        ("white_unseen", {}, not measurement.anchor.is_seen),
+        ("blocks_left_out", {"part": part}, part > NOTABLE_OUTLIERS),
+        ("white_below_largest", {"code": 255 * white}, white < 1),
+    ]
+    return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
 
 
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:

@@ -22,9 +22,8 @@ ROUNDS = 2
 #: Residual in 8-bit codes from which a frame does not fit, and by which factor it has to exceed the others.
 WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
-#: Stops that the frames that fit each other have to span, fewer than a whole stack: over one stop, whose labels may be
-#: 1/15 and 1/8 s, the shape of 22 of 23 simulated stacks was within two of its stated standard deviations; over a third
-#: of a stop the scale of every second one was not, and over none no solution exists.
+#: Stops that the frames that fit each other have to span: over one, whose labels may be 1/15 and 1/8 s, the shape of 22
+#: of 23 simulated stacks was within two of its stated deviations; over a third the scale of every second was not.
 LEAST_REST = 0.9
 
 #: A sample is an outlier if its largest residual, in expected standard deviations, exceeds this many times that of the
@@ -115,12 +114,10 @@ def fit_and_anchor(
 
 
 def find_white(seen: Observations, fit: StackFit) -> Anchor:
-    """Return where white is.
+    """Return where white is (Eq. C.3), and its deviation (Eq. C.5).
 
-    Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
-    and a parabola for the irradiance over the last codes of the fitted curve. The first counts twice. Where surfaces
-    have texture, samples become white gradually, and both ways find white too high, by about the blur of `_crossing`.
-    The deviation holds how far the two are apart, half the blur, and the last half code, which no pixel shows.
+    Two ways: the irradiance at which half the pixels of flat samples are white, which counts twice; and a parabola over
+    the last codes of the fitted curve. Where surfaces have texture, both find white too high, by about the blur.
     """
     crosses = seen.is_white.any(axis=1) & seen.is_used.any(axis=1)
     if crosses.sum() < LEAST_CROSSINGS:
@@ -139,7 +136,7 @@ def find_white(seen: Observations, fit: StackFit) -> Anchor:
 def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, float]:
     """Return log2 of the irradiance that parts white pixels from others best, over the flattest samples; and its blur.
 
-    The blur, in stops, is the fraction of white pixels below this irradiance, as far as it is more than noise makes.
+    The blur, in stops, is the fraction of white pixels below, as far as it is more than noise makes.
     """
     partly = (seen.white_fraction > PARTLY_WHITE).any(axis=1)
     flat = seen.spread <= np.quantile(seen.spread[partly], FLATTEST)

@@ -1,5 +1,6 @@
 """The response that explains observations best, by robust nonlinear least squares: shared by stacks and raw pairs."""
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -44,8 +45,7 @@ class FittedResponse:
         drawn = rng.multivariate_normal(self.weights, self.covariance, size=DRAWS, method="eigh")
         stops = np.stack([CurveModel.load().log_irradiance(weights, codes) for weights in drawn])
         off = stops - stops.mean(axis=0)
-        scales = off.mean(axis=1)
-        return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
+        return float(np.sqrt(off.var(axis=1).mean())), float(off.mean(axis=1).std())
 
 
 class ResponseProblem(ABC):
@@ -138,8 +138,8 @@ class ResponseProblem(ABC):
 
 def rms_codes(residual: Float64Array) -> float:
     """Return the root mean square of what counts of a residual, white = 255; NaN if nothing does."""
-    counted = residual[np.isfinite(residual)]
-    return float(255 * np.sqrt(np.mean(counted**2))) if len(counted) else float("nan")
+    counts = np.isfinite(residual)
+    return float(255 * np.sqrt(np.mean(residual[counts] ** 2))) if counts.any() else math.nan
 
 
 def huber_cost(scaled: Float64Array) -> Float64Array:

@@ -63,8 +63,7 @@ class _PairProblem(ResponseProblem):
 
     def __init__(self, cells: Cells, headroom: tuple[float, float]) -> None:
         codes, self.is_open = cells.codes, cells.is_open & ~cells.is_saturated[:, None]
-        near_white = cells.is_white & (codes.min(axis=1, keepdims=True) > 200)
-        is_white = near_white & ~cells.is_saturated[:, None]
+        is_white = cells.is_white & (codes.min(axis=1, keepdims=True) > 200) & ~cells.is_saturated[:, None]
         self.cells, self.expected, shots = cells, headroom, cells.shot.shape[1]
         tilts = (cells.shot[:, :, None] * cells.place[:, None]).reshape(len(codes), -1)
         corner = (cells.place**2).sum(axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -61,9 +61,6 @@ WHITE_DEVIATIONS = {
     WhiteBasis.EXTRAPOLATED: 0.45,
     WhiteBasis.BRACKETED: 0.5,
 }
-
-#: Codes of the notices of white that was not seen.
-UNSEEN_WHITE = {WhiteBasis.EXTRAPOLATED: "white_extrapolated", WhiteBasis.BRACKETED: "white_bracketed"}
 
 
 def measure_pairs(
@@ -189,14 +186,14 @@ def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
 
 def _notices(pairs: Sequence[Pair], fit: PairFit, basis: WhiteBasis, low: float) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    notices = [Notice("measures_program", {"editor": pair.editor}) for pair in pairs if pair.editor]
-    if abs(fit.local) > NOTABLE_LOCAL:
-        notices.append(Notice("local_fitted", {"local": fit.local}))
-    if basis in UNSEEN_WHITE:
-        notices.append(Notice(UNSEEN_WHITE[basis]))
-    if low > SEEN_BOTTOM:
-        notices.append(Notice("dark_unseen", {"low": low}))
-    return tuple(notices)
+    doubts: list[tuple[str, Mapping[str, object], object]] = [
+        *(("measures_program", {"editor": pair.editor}, pair.editor) for pair in pairs),
+        ("local_fitted", {"local": fit.local}, abs(fit.local) > NOTABLE_LOCAL),
+        ("white_extrapolated", {}, basis is WhiteBasis.EXTRAPOLATED),
+        ("white_bracketed", {}, basis is WhiteBasis.BRACKETED),
+        ("dark_unseen", {"low": low}, low > SEEN_BOTTOM),
+    ]
+    return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
 
 
 def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[ShotReport, ...]:
