@@ -56,10 +56,9 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
     ISO and aperture count where every frame states them. A scene's light on the sensor is proportional to
     seconds / f-number^2, and the code values follow its product with ISO (ISO 12232).
     """
-    seconds, iso, aperture = (
-        _stops([getattr(label, name) for label in labels]) for name in ("seconds", "iso", "f_number")
-    )
-    parts = [seconds, iso, -2 * aperture]
+    seconds = _stops([label.seconds for label in labels])
+    iso, aperture = _stops([label.iso for label in labels]), -2 * _stops([label.f_number for label in labels])
+    parts = [seconds, iso, aperture]
     snapped = [part for part in map(_snapped, parts) if part is not None]
     differing = [name for name, part in (("ISO", iso), ("aperture", aperture)) if np.ptp(part) > 0]
     return Exposures(_centered(parts), _centered(snapped) if len(snapped) == len(parts) else None, tuple(differing))
