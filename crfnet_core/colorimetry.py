@@ -84,22 +84,13 @@ class Primaries:
         return np.asarray(columns * scales)
 
 
-#: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB).
+#: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB); SMPTE EG 432-1 with a D65 white; Adobe RGB (1998) Color Image Encoding,
+#: 4.3.1; ISO 22028-2 (ROMM RGB); ITU-R BT.2020-2; SMPTE ST 2065-1 (ACES2065-1); and the Academy's S-2014-004 (ACEScg).
 REC709 = Primaries("Rec.709", (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), interop_id="lin_rec709_scene")
-
-#: SMPTE EG 432-1 with a D65 white.
 DISPLAY_P3 = Primaries("Display P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), interop_id="lin_p3d65_scene")
-
-#: Adobe RGB (1998) Color Image Encoding, 4.3.1.
 ADOBE_RGB = Primaries("Adobe RGB", (0.64, 0.33), (0.21, 0.71), (0.15, 0.06), interop_id="lin_adobergb_scene")
-
-#: ISO 22028-2 (ROMM RGB).
 PROPHOTO = Primaries("ProPhoto RGB", (0.734699, 0.265301), (0.159597, 0.840403), (0.036598, 0.000105), D50)
-
-#: ITU-R BT.2020-2.
 REC2020 = Primaries("Rec.2020", (0.708, 0.292), (0.17, 0.797), (0.131, 0.046), interop_id="lin_rec2020_scene")
-
-#: SMPTE ST 2065-1 (ACES2065-1), and the Academy's S-2014-004 (ACEScg).
 AP0 = Primaries("ACES AP0", (0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), D60, "lin_ap0_scene")
 AP1 = Primaries("ACES AP1", (0.713, 0.293), (0.165, 0.83), (0.128, 0.044), D60, "lin_ap1_scene")
 

@@ -39,8 +39,6 @@ SENTENCES: Mapping[str, str] = {
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
     "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
-    "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
-    " state the primaries of all",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
     "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",

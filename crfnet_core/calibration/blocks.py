@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,14 +43,6 @@ BIN, BLOCKS = 0.2, 650
 LEAST_SAMPLES = 200
 
 
-class BlockMeans(NamedTuple):
-    """Means over the blocks of one frame, each of shape (N, 3): brightness, its spread over cells, white fraction."""
-
-    brightness: Float64Array
-    spread: Float64Array
-    white: Float64Array
-
-
 @dataclass(frozen=True, eq=False)
 class Observations:
     """The brightness of M samples (a block in one channel) in T frames."""
@@ -78,40 +70,34 @@ class Observations:
         return Observations(**{**vars(self), **cut})
 
 
-def block_means(codes: CodeArray, white: float) -> BlockMeans:
-    """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
+def block_means(codes: CodeArray, white: float) -> Float64Array:
+    """Return brightness, its spread over cells, and the white fraction of the blocks of a frame: (3, N, 3).
+
+    `codes` are of shape (H, W, 3), `white` is the code of white. The blocks come row by row.
+    """
     cell = max(1, round(max(codes.shape) / (CELLS * BLOCKS_ACROSS)))  # so small pictures have fewer blocks
     cells = squares(_means(codes, cell) / white, CELLS)
     is_white = codes >= white * (1 - WHITE_MARGIN / 255)
-    return BlockMeans(
-        brightness=np.minimum(cells.mean(axis=WITHIN), 1).reshape(-1, 3),
-        spread=cells.std(axis=WITHIN).reshape(-1, 3),
-        white=_means(is_white, CELLS * cell).reshape(-1, 3),
-    )
+    parts = np.minimum(cells.mean(axis=WITHIN), 1), cells.std(axis=WITHIN), _means(is_white, CELLS * cell)
+    return np.stack(parts).reshape(3, -1, 3)
 
 
-def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
-    """Return every sample of every block, channel after channel; one channel only if gray."""
-    channels = 1 if is_gray else 3
-    brightness, spread, white = (
-        np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)
-    )  # (N, C, T)
+def observe(frames: Sequence[Float64Array], *, is_gray: bool) -> Observations:
+    """Return every sample of every block, channel after channel, given `block_means`; one channel only if gray."""
+    brightness, spread, white = np.stack(frames, axis=-1)[:, :, : 1 if is_gray else 3]  # (N, C, T)
     is_used = (white <= PARTLY_WHITE) & (brightness * 255 >= DARKEST_CODE)
-    deviation = np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread)
-    deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
+    dark = 1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2
     chroma = np.ptp(brightness, axis=1, keepdims=True) / np.maximum(brightness.max(axis=1, keepdims=True), 1 / 255)
     has_clipped = (white > PARTLY_WHITE).any(axis=1, keepdims=True) & is_used
-    deviation = deviation * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOR, 1)
-    count = is_used.sum(axis=2)
-    typical = np.where(count > 0, (spread * is_used).sum(axis=2) / np.maximum(count, 1), np.inf)
-    blocks, frame_count = len(brightness), brightness.shape[2]
-    flat = (blocks * channels, frame_count)
+    uncertain = dark * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOR, 1)
+    blocks, channels, count = brightness.shape
+    flat = (blocks * channels, count)
     return Observations(
         brightness=brightness.reshape(flat),
-        deviation=deviation.reshape(flat),
+        deviation=(np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread) * uncertain).reshape(flat),
         is_used=is_used.reshape(flat),
         white_fraction=white.reshape(flat),
-        spread=typical.ravel(),
+        spread=((spread * is_used).sum(axis=2) / np.maximum(is_used.sum(axis=2), 1)).ravel(),
         block=np.repeat(np.arange(blocks), channels),
         channel=np.tile(np.arange(channels), blocks),
     )
@@ -124,30 +110,20 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observation
     than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
     """
     channels = int(seen.channel.max()) + 1
-    levels = log_irradiance.reshape(-1, channels)
+    levels, spread = log_irradiance.reshape(-1, channels), seen.spread.reshape(-1, channels)
     is_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels)
-    _check_often(is_often)
+    if (count := channels * int(is_often.all(axis=1).sum())) < LEAST_SAMPLES:
+        is_poor = channels * is_often.sum(axis=0) < LEAST_SAMPLES
+        poor = " and ".join(np.array(["red", "green", "blue"])[:channels][is_poor])
+        if poor and not is_poor.all():
+            raise CalibrationError("dark_channel", count=count, least=LEAST_SAMPLES, channels=poor)
+        raise CalibrationError("few_flat_places", count=count, least=LEAST_SAMPLES)
     fit = np.flatnonzero(is_often.all(axis=1) & np.isfinite(levels).all(axis=1))
-    color = np.ptp(levels[fit], axis=1)
-    rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + color)
-    bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
-    parts = members_of_bins(bins, rank)
+    rank = spread[fit].mean(axis=1) * (1 + np.ptp(levels[fit], axis=1))
+    parts = members_of_bins(np.floor(levels[fit].mean(axis=1) / BIN), rank)
     places = np.concatenate([np.arange(len(part)) for part in parts])
     picked = np.concatenate(parts)[places.argsort(kind="stable")[:BLOCKS]]
     return seen.subset(np.isin(seen.block, fit[picked]))
-
-
-def _check_often(is_often: BoolArray) -> None:
-    """Refuse a stack that shows too few blocks in two frames, given which each channel does, shape (N, C)."""
-    channels = is_often.shape[1]
-    samples = channels * int(is_often.all(axis=1).sum())
-    if samples >= LEAST_SAMPLES:
-        return
-    each = channels * is_often.sum(axis=0)
-    poor = [name for name, count in zip(("red", "green", "blue"), each, strict=False) if count < LEAST_SAMPLES]
-    if 0 < len(poor) < channels:
-        raise CalibrationError("dark_channel", count=samples, least=LEAST_SAMPLES, channels=" and ".join(poor))
-    raise CalibrationError("few_flat_places", count=samples, least=LEAST_SAMPLES)
 
 
 def members_of_bins(bins: NDArray[Any], rank: Float64Array) -> list[IndexArray]:

@@ -1,7 +1,7 @@
 """Measure a camera's response from an exposure stack: the whole of it on one screen; and the door to raw pairs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +10,9 @@ from crfnet_core.calibration import checks
 from crfnet_core.calibration.alignment import Shift
 from crfnet_core.calibration.blocks import Observations, block_means, observe
 from crfnet_core.calibration.curve_model import in_file_codes
-from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
+from crfnet_core.calibration.exposures import Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
-from crfnet_core.calibration.measured import MeasuredResponse, PairCalibration
+from crfnet_core.calibration.measured import Calibration, FrameReport, PairCalibration
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure, uncertainty_of
 from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.errors import CalibrationError
@@ -26,32 +26,6 @@ SNAPPED_BONUS = 30.0
 
 #: Largest distance in stops between nominal and snapped labels that makes no difference.
 SAME_LABELS = 0.005
-
-
-@dataclass(frozen=True, eq=False)
-class FrameReport:
-    """One frame of a measured stack."""
-
-    path: Path
-    label: ExposureLabel  # its exposure by EXIF or as given
-    stops: float  # its exposure as used, relative to the mean of the stack
-    #: Shape (C,): stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
-    offsets: Float64Array
-    shift: Shift  # rows and columns in pixels by which it was displaced
-    #: Root mean square of brightness less the model's, in 8-bit codes of the file; NaN if it was left out.
-    residual: float
-    is_used: bool  # whether it fits the others
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Calibration(MeasuredResponse):
-    """A response measured from an exposure stack."""
-
-    white: float  # code of white as a part of the largest code
-    reaches_white: bool  # whether white was seen; otherwise the scale comes from similar known responses
-    labels: str  # the reading of the exposure labels: "nominal", or "exact powers of two"
-    nearest_known: float  # E_est between it and the nearest packaged response, both in parts of their own white
-    frames: tuple[FrameReport, ...]  # in the order of the files
 
 
 def calibrate_stack(
@@ -82,9 +56,8 @@ def calibrate_stack(
     checks.check_seen(white * every.brightness[every.is_used])
     readings = _readings(exposures, frames[0])
     labels, measurement, other = _measured(every, readings)
-    names = np.array([frame.path.name for frame in frames])
-    used, left_out = names[measurement.frames].tolist(), names[~measurement.frames].tolist()
-    checks.check_measurement(measurement, used, left_out, white=white)
+    reports = _frame_reports(frames, measurement, readings[labels], shifts, white=white)
+    checks.check_measurement(measurement, reports, white=white)
     curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
@@ -96,10 +69,10 @@ def calibrate_stack(
         labels=labels,
         nearest_known=checks.nearest_known(measurement.curve),
         metadata=frames[0].metadata,
-        frames=_frame_reports(frames, measurement, readings[labels], shifts, white=white),
+        frames=reports,
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=checks.notices_of(measurement, used, left_out, exposures, white=white),
+        warnings=checks.notices_of(measurement, reports, exposures, white=white),
     )
 
 
@@ -118,15 +91,15 @@ def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
     """Return the frames with stated times."""
     if len(seconds) != len(frames):
         raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
-    labels = [replace(frame.label, seconds=time) for frame, time in zip(frames, seconds, strict=True)]
-    return [replace(frame, label=label) for frame, label in zip(frames, labels, strict=True)]
+    return [
+        replace(frame, label=replace(frame.label, seconds=time)) for frame, time in zip(frames, seconds, strict=True)
+    ]
 
 
 def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:
     """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
     nominal = {"nominal": exposures.nominal}
-    is_phone = device_of(first.metadata.make, first.metadata.model) is Device.PHONE
-    if exposures.snapped is None or is_phone:
+    if exposures.snapped is None or device_of(first.metadata.make, first.metadata.model) is Device.PHONE:
         return nominal
     snapped = {"exact powers of two": exposures.snapped}
     is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS
@@ -139,14 +112,13 @@ def _measured(
     """Return the first reading of the labels or a much better other, its measurement, and the other's response."""
     (labels, stops), *others = readings.items()
     measurement = measure(every, stops)
-    if not others:
-        return labels, measurement, None
-    other, stops = others[0]
-    again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
-    if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
-        again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
-        return other, again, measurement.curve
-    return labels, measurement, again.curve
+    for other, stops in others:
+        again = fit_and_anchor(measurement.seen, stops[measurement.frames], measurement.fit.weights)
+        if measurement.fit.cost > again.fit.cost + SNAPPED_BONUS:
+            again = replace(again, frames=measurement.frames, outliers=measurement.outliers)
+            return other, again, measurement.curve
+        return labels, measurement, again.curve
+    return labels, measurement, None
 
 
 def _frame_reports(
@@ -165,7 +137,7 @@ def _frame_reports(
 
 def _points(measurement: Measurement, *, white: float) -> Float64Array:
     """Return `Calibration.points`."""
-    log_irradiance = measurement.fit.exposed(measurement.exposures, measurement.seen) - measurement.anchor.log_white
+    log_irradiance = measurement.fit.log_light - measurement.anchor.log_white
     used = np.broadcast_to(np.flatnonzero(measurement.frames), log_irradiance.shape)
     columns = (log_irradiance, white * measurement.seen.brightness, white * measurement.fit.residual, used)
     return np.stack([column[measurement.seen.is_used] for column in columns], axis=1)

@@ -9,6 +9,7 @@ from crfnet_core.calibration.blocks import Observations, members_of_bins
 from crfnet_core.calibration.curve_model import in_camera_responses
 from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
+from crfnet_core.calibration.measured import FrameReport
 from crfnet_core.calibration.measurement import Measurement
 from crfnet_core.calibration.robust import rms_codes
 from crfnet_core.errors import CalibrationError, Notice, beside_limits
@@ -64,20 +65,19 @@ def check_seen(brightness: Float64Array) -> None:
         raise CalibrationError("codes_unseen", part=part, first=FIRST_SHAPE_CODE, last=LAST_SHAPE_CODE)
 
 
-def check_measurement(measurement: Measurement, used: Sequence[str], left_out: Sequence[str], *, white: float) -> None:
-    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response.
-
-    `used` and `left_out` are the names of frames.
-    """
+def check_measurement(measurement: Measurement, frames: Sequence[FrameReport], *, white: float) -> None:
+    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response."""
+    left_out = ", ".join(frame.path.name for frame in frames if not frame.is_used)
     residual = white * rms_codes(measurement.fit.residual)
     is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
     if is_moved or (residual > MOST_RESIDUAL and scatter(measurement.seen, measurement.exposures) > MOST_SCATTER):
-        raise CalibrationError("scene_moved", which=f"{', '.join(left_out)} and more" if left_out else "some blocks")
+        raise CalibrationError("scene_moved", which=f"{left_out} and more" if left_out else "some blocks")
     offsets = off_trend(measurement)
     worst = int(np.abs(offsets).argmax())
     if abs(offsets[worst]) > MOST_OFFSET:
+        path = [frame.path.name for frame in frames if frame.is_used][worst]
         direction = "brighter" if offsets[worst] > 0 else "darker"
-        raise CalibrationError("frame_mistimed", path=used[worst], stops=abs(offsets[worst]), direction=direction)
+        raise CalibrationError("frame_mistimed", path=path, stops=abs(offsets[worst]), direction=direction)
     if residual > MOST_RESIDUAL:
         raise CalibrationError("no_single_curve", residual=beside_limits(residual, MOST_RESIDUAL), most=MOST_RESIDUAL)
     if (distance := nearest_known(measurement.curve)) > MOST_UNKNOWN and measurement.anchor.is_seen:
@@ -85,26 +85,24 @@ def check_measurement(measurement: Measurement, used: Sequence[str], left_out: S
 
 
 def notices_of(
-    measurement: Measurement, used: Sequence[str], left_out: Sequence[str], exposures: Exposures, *, white: float
+    measurement: Measurement, frames: Sequence[FrameReport], exposures: Exposures, *, white: float
 ) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    notices = [Notice("frame_unfit", {"name": name}) for name in left_out]
+    used = [frame.path.name for frame in frames if frame.is_used]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
-    notices += [Notice("frame_off", {"name": name, "off": off}) for name, off in offsets if abs(off) > NOTABLE_OFFSET]
-    if exposures.differing:
-        notices.append(Notice("settings_differ", {"settings": " and ".join(exposures.differing)}))
-    if (distance := nearest_known(measurement.curve, in_camera=True)) > MOST_UNKNOWN:
-        notices.append(Notice("unlike_cameras", {"distance": distance}))
     highest = 255 * float(measurement.seen.brightness[measurement.seen.is_used].max())  # white = 255
-    if highest < LAST_SHAPE_CODE:
-        notices.append(Notice("codes_above_unseen", {"highest": white * highest}))
-    if not measurement.anchor.is_seen:
-        notices.append(Notice("white_unseen"))
-    if measurement.outliers > NOTABLE_OUTLIERS:
-        notices.append(Notice("blocks_left_out", {"part": measurement.outliers}))
-    if white < 1:
-        notices.append(Notice("white_below_largest", {"code": 255 * white}))
-    return tuple(notices)
+    distance, part = nearest_known(measurement.curve, in_camera=True), measurement.outliers
+    doubts = [
+        *(("frame_unfit", {"name": frame.path.name}, not frame.is_used) for frame in frames),
+        *(("frame_off", {"name": name, "off": off}, abs(off) > NOTABLE_OFFSET) for name, off in offsets),
+        ("settings_differ", {"settings": " and ".join(exposures.differing)}, exposures.differing),
+        ("unlike_cameras", {"distance": distance}, distance > MOST_UNKNOWN),
+        ("codes_above_unseen", {"highest": white * highest}, highest < LAST_SHAPE_CODE),
+        ("white_unseen", {}, not measurement.anchor.is_seen),
+        ("blocks_left_out", {"part": part}, part > NOTABLE_OUTLIERS),
+        ("white_below_largest", {"code": 255 * white}, white < 1),
+    ]
+    return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
 
 
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:

@@ -95,10 +95,7 @@ class CurveModel:
         return np.interp(brightness, rising, TABLE)
 
     def response(self, weights: ArrayLike, *, log_white: float = 0.0) -> ResponseCurve:
-        """Return the response with `weights`, shape (K,), as a strictly monotone curve.
-
-        `log_white` is log2 of the model's irradiance that is white; 0 unless the anchor was corrected afterwards.
-        """
+        """Return the response with `weights`, shape (K,), as a strictly monotone curve; white is at 2^`log_white`."""
         table = self.mean + self.basis @ np.asarray(weights, dtype=np.float64)
         stops = np.log2(np.maximum(UNIFORM, 1e-9)) + log_white
         samples = np.interp(stops, TABLE, table)
@@ -131,7 +128,7 @@ def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
 
 def _position(log_irradiance: Float64Array) -> tuple[IndexArray, Float64Array]:
     """Return the place in the table that irradiance is above, and by what part of a step; clipped to the table."""
-    position = np.clip((log_irradiance - LOWEST) * STEPS, 0, (HIGHEST - LOWEST) * STEPS - 0.001)
+    position = np.clip((log_irradiance - LOWEST) * STEPS, 0, len(TABLE) - 1.001)
     below = position.astype(np.intp)
     return below, position - below
 

@@ -87,9 +87,7 @@ def white_level(frames: Sequence[Frame]) -> float:
 
 def _steps(codes: CodeArray, largest: int) -> CodeArray:
     """Return codes from 0 to `largest` rounded to 256 steps, of the same shape."""
-    if largest == 255:
-        return codes
-    return ((codes.astype(np.int64) * 255 + largest // 2) // largest).astype(np.uint8)
+    return codes if largest == 255 else ((codes.astype(np.int64) * 255 + largest // 2) // largest).astype(np.uint8)
 
 
 def _pile(fractions: Float64Array) -> int | None:
@@ -106,7 +104,7 @@ def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArra
 
     `order` lists the frames from the shortest to the longest exposure.
     """
-    stride = max(1, -(-max(frames[0].codes.shape) // LONGEST_SIDE))
+    stride = -(-max(frames[0].codes.shape) // LONGEST_SIDE)
     ranks = [rank_image(frame.codes[::stride, ::stride].mean(axis=2, dtype=np.float64)) for frame in frames]
     shifts = chain_of_shifts(ranks, order, stride)
     cut = common_parts([frame.codes for frame in frames], shifts)
@@ -115,7 +113,7 @@ def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArra
 
 def _frame(path: Path, values: CodeValues) -> Frame:
     """Return a file's samples, thinned out."""
-    stride = max(1, -(-max(values.codes.shape[:2]) // KEPT_SIDE))
+    stride = -(-max(values.codes.shape) // KEPT_SIDE)
     codes = values.codes[::stride, ::stride].copy()
     return Frame(
         path=path,
@@ -131,13 +129,14 @@ def _frame(path: Path, values: CodeValues) -> Frame:
 
 def _check_like_first(first: Frame, frame: Frame) -> None:
     """Refuse a frame whose size, bit depth or camera differs from the first frame's."""
-    path, first_name = frame.path, first.path.name
-    sizes = [f"{each.metadata.width} x {each.metadata.height}" for each in (frame, first)]
-    if sizes[0] != sizes[1]:
-        raise CalibrationError("frame_size", path=path, size=sizes[0], first=first_name, first_size=sizes[1])
+    names = {"path": frame.path, "first": first.path.name}
+    size, first_size = (f"{each.metadata.width} x {each.metadata.height}" for each in (frame, first))
+    if size != first_size:
+        raise CalibrationError("frame_size", **names, size=size, first_size=first_size)
     if frame.largest != first.largest:
-        raise CalibrationError("frame_bits", path=path, first=first_name)
-    makers = [(each.metadata.make, each.metadata.model) for each in (frame, first)]
-    if makers[0] != makers[1]:
-        cameras = [" ".join(filter(None, maker)) or "no camera" for maker in makers]
-        raise CalibrationError("frame_camera", path=path, camera=cameras[0], first=first_name, first_camera=cameras[1])
+        raise CalibrationError("frame_bits", **names)
+    camera, first_camera = (
+        f"{each.metadata.make} {each.metadata.model}".strip() or "no camera" for each in (frame, first)
+    )
+    if camera != first_camera:
+        raise CalibrationError("frame_camera", **names, camera=camera, first_camera=first_camera)

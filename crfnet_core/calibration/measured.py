@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration.alignment import Shift
+from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import Notice
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.response.curve import ResponseCurve
@@ -21,28 +23,18 @@ CHANNEL_PART = 0.5
 class Uncertainty:
     """Standard deviations in stops, each with its parts by name."""
 
-    shape: dict[str, float]  # parts of the shape's: see `crfnet_core.response.metrics.shape_error`
-    scale: dict[str, float]  # parts of the scale's: see `crfnet_core.response.metrics.scale_error`
+    shape: dict[str, float]  # of `crfnet_core.response.metrics.shape_error`
+    scale: dict[str, float]  # of `crfnet_core.response.metrics.scale_error`
 
     @property
     def shape_stops(self) -> float:
-        """The root of the sum of squares of the shape's parts."""
+        """The root of the sum of their squares."""
         return math.hypot(*self.shape.values())
 
     @property
     def scale_stops(self) -> float:
-        """The same of the scale's parts."""
+        """The same of the scale."""
         return math.hypot(*self.scale.values())
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Errors of another response by the functions of these names; E_lin is of the best exposed frame."""
-
-    estimation_error: float
-    linearization_error: float
-    shape_error: float
-    scale_error: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -62,15 +54,36 @@ class MeasuredResponse:
     counts: Float64Array  # (256,): how often each of 256 steps of brightness occurs in the best exposed file
     warnings: tuple[Notice, ...]  # doubts about the measurement
 
-    def compare(self, other: ResponseCurve) -> Comparison:
-        """Return how far another response, such as an estimate, is from this one."""
+    def compare(self, other: ResponseCurve) -> dict[str, float]:
+        """Return the errors of another response, such as an estimate, by name; E_lin is of the best exposed frame."""
+        errors = {error.__name__: error(self.curve, other) for error in (estimation_error, shape_error, scale_error)}
         steps = np.arange(256) / 255
-        return Comparison(
-            estimation_error=estimation_error(self.curve, other),
-            linearization_error=linearization_error(steps, self.curve, other, counts=self.counts),
-            shape_error=shape_error(self.curve, other),
-            scale_error=scale_error(self.curve, other),
-        )
+        return errors | {"linearization_error": linearization_error(steps, self.curve, other, counts=self.counts)}
+
+
+@dataclass(frozen=True, eq=False)
+class FrameReport:
+    """One frame of a measured stack."""
+
+    path: Path
+    label: ExposureLabel  # its exposure by EXIF or as given
+    stops: float  # its exposure as used, relative to the mean of the stack
+    #: Shape (C,): stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
+    offsets: Float64Array
+    shift: Shift  # rows and columns in pixels by which it was displaced
+    residual: float  # as of `MeasuredResponse`; NaN if it was left out
+    is_used: bool  # whether it fits the others
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Calibration(MeasuredResponse):
+    """A response measured from an exposure stack."""
+
+    white: float  # code of white as a part of the largest code
+    reaches_white: bool  # whether white was seen; otherwise the scale comes from similar known responses
+    labels: str  # the reading of the exposure labels: "nominal", or "exact powers of two"
+    nearest_known: float  # E_est between it and the nearest packaged response, both in parts of their own white
+    frames: tuple[FrameReport, ...]  # in the order of the files
 
 
 class WhiteBasis(StrEnum):

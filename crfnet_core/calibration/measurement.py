@@ -1,10 +1,6 @@
-"""From observations to an anchored response, and how far it may be off.
+"""From observations to a response whose scale is where codes reach white (Eq. C.3), and how far it may be off."""
 
-Start, fit, and the irradiance at which the codes reach white, which sets the scale of the response (Eq. C.3). Frames
-and samples that do not fit are left out. The uncertainty is in stops, of the shape and of the scale (Eq. C.4 and C.5).
-"""
-
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,9 +22,8 @@ ROUNDS = 2
 #: Residual in 8-bit codes from which a frame does not fit, and by which factor it has to exceed the others.
 WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
-#: Stops that the frames that fit each other have to span, fewer than a whole stack: over one stop, whose labels may be
-#: 1/15 and 1/8 s, the shape of 22 of 23 simulated stacks was within two of its stated standard deviations; over a third
-#: of a stop the scale of every second one was not, and over none no solution exists.
+#: Stops that the frames that fit each other have to span: over one, whose labels may be 1/15 and 1/8 s, the shape of 22
+#: of 23 simulated stacks was within two of its stated deviations; over a third the scale of every second was not.
 LEAST_REST = 0.9
 
 #: A sample is an outlier if its largest residual, in expected standard deviations, exceeds this many times that of the
@@ -69,17 +64,15 @@ class Measurement:
 
     seen: Observations  # the samples that were used, in the frames that were used
     exposures: Float64Array  # (T,): the labels of these frames, in stops
-    frames: BoolArray  # (all frames,): which frames these are
     fit: StackFit  # its unit of irradiance is white but for `anchor`
     anchor: Anchor  # where white is in that unit
     curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
-    outliers: float  # fraction of the samples that were left out
+    frames: BoolArray  # (all frames,): which frames were used
+    outliers: float = 0.0  # fraction of the samples that were left out
 
 
 def measure(every: Observations, exposures: Float64Array) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
-
-    `exposures` are the labels in stops, shape (T,).
 
     Raise CalibrationError if too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans
     too few stops.
@@ -113,31 +106,28 @@ def fit_and_anchor(
     found = []
     for _ in range(rounds):
         fit = fit_stack(seen, exposures, start)
-        anchor = find_white(seen, exposures, fit)
+        anchor = find_white(seen, fit)
         curve = fit.response(log_white=anchor.log_white)
         start = CurveModel.load().weights_of(curve)
-        found.append(Measurement(seen, exposures, np.ones(len(exposures), dtype=bool), fit, anchor, curve, 0.0))
+        found.append(Measurement(seen, exposures, fit, anchor, curve, frames=np.ones(len(exposures), dtype=bool)))
     return min(found, key=lambda measurement: measurement.fit.cost)
 
 
-def find_white(seen: Observations, exposures: Float64Array, fit: StackFit) -> Anchor:
-    """Return where white is.
+def find_white(seen: Observations, fit: StackFit) -> Anchor:
+    """Return where white is (Eq. C.3), and its deviation (Eq. C.5).
 
-    Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
-    and a parabola for the irradiance over the last codes of the fitted curve. The first counts twice. Where surfaces
-    have texture, samples become white gradually, and both ways find white too high, by about the blur of `_crossing`.
-    The deviation holds how far the two are apart, half the blur, and the last half code, which no pixel shows.
+    Two ways: the irradiance at which half the pixels of flat samples are white, which counts twice; and a parabola over
+    the last codes of the fitted curve. Where surfaces have texture, both find white too high, by about the blur.
     """
     crosses = seen.is_white.any(axis=1) & seen.is_used.any(axis=1)
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
-    irradiance = np.exp2(fit.log_inverse(codes / 255))
+    irradiance = np.exp2(CurveModel.load().log_irradiance(fit.weights, codes / 255))
     parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
     parabolic = float(np.log2(max(parabola, irradiance[-1])))
-    crossing, blur = _crossing(seen, fit.exposed(exposures, seen))
-    before = float(fit.log_inverse(np.array([LINE_FROM / 255]))[0])
-    per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
+    crossing, blur = _crossing(seen, fit.log_light)
+    per_code = max(np.exp2(crossing) - irradiance[LINE_FROM - PARABOLA_FROM], 0) / (WHITE_CODE - LINE_FROM)
     crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
     parts = (LEAST_DEVIATION, (crossed - parabolic) / 2, blur / 2, crossed - crossing)
     return Anchor((2 * crossed + parabolic) / 3 - blur, float(np.linalg.norm(parts)), is_seen=True)
@@ -146,7 +136,7 @@ def find_white(seen: Observations, exposures: Float64Array, fit: StackFit) -> An
 def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, float]:
     """Return log2 of the irradiance that parts white pixels from others best, over the flattest samples; and its blur.
 
-    The blur, in stops, is the fraction of white pixels below this irradiance, as far as it is more than noise makes.
+    The blur, in stops, is the fraction of white pixels below, as far as it is more than noise makes.
     """
     partly = (seen.white_fraction > PARTLY_WHITE).any(axis=1)
     flat = seen.spread <= np.quantile(seen.spread[partly], FLATTEST)
@@ -173,27 +163,27 @@ def _worst_frame(fit: StackFit) -> int | None:
 
 
 def uncertainty_of(measurement: Measurement, other_labels: ResponseCurve | None, *, white: float) -> Uncertainty:
-    """Return how far a measured response may be off, at the codes of the file.
+    """Return how far a measured response may be off, at the codes of the file (Eq. C.4 and C.5).
 
-    `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
-    exposure labels, if there is one.
+    `white` is as in `Calibration`, `other_labels` the response by the other reading of the exposure labels, if any.
     """
     even = measurement.seen.block % 2 == 0
-    parts = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
+    halves = [_curve_of(measurement.seen.subset(part), measurement.exposures, measurement) for part in (even, ~even)]
     alone = []
     for channel, offsets in enumerate(measurement.fit.offsets.T):  # the exposures that all channels found for it
         part = measurement.seen.subset(measurement.seen.channel == channel)
         gray = replace(part, channel=np.zeros_like(part.channel))
         alone.append(_curve_of(gray, measurement.exposures + offsets, measurement))
-    others = [] if other_labels is None else [other_labels]
-    curve, first, second = (in_file_codes(each, white) for each in (measurement.curve, *parts))
+    curve, other, first, second, *channels = (
+        in_file_codes(each, white) for each in (measurement.curve, other_labels or measurement.curve, *halves, *alone)
+    )
 
     def disagreements(error: Callable[[ResponseCurve, ResponseCurve], float]) -> dict[str, float]:
         """Return how far responses are apart that should be one."""
         return {
             "sampling": abs(error(first, second)) / 2,
-            "channels": CHANNEL_PART * _rms([error(curve, in_file_codes(each, white)) for each in alone]),
-            "labels": 0.5 * _rms([error(curve, in_file_codes(each, white)) for each in others]),
+            "channels": CHANNEL_PART * float(np.sqrt(np.mean([error(curve, each) ** 2 for each in channels]))),
+            "labels": abs(error(curve, other)) / 2,
         }
 
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
@@ -211,8 +201,3 @@ def _curve_of(seen: Observations, exposures: Float64Array, measurement: Measurem
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
     return fit_and_anchor(seen, exposures, measurement.fit.weights, rounds=1).curve
-
-
-def _rms(values: Sequence[float]) -> float:
-    """Return the root mean square, 0 of nothing."""
-    return float(np.linalg.norm(values) / np.sqrt(max(len(values), 1)))

@@ -1,5 +1,6 @@
 """The response that explains observations best, by robust nonlinear least squares: shared by stacks and raw pairs."""
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -27,19 +28,16 @@ DRAWS, SEED = 64, 0
 
 @dataclass(frozen=True, eq=False)
 class FittedResponse:
-    """A fitted response of `CurveModel`."""
+    """A fitted response of `CurveModel`, and the light of the observations."""
 
     weights: Float64Array  # (K,)
     covariance: Float64Array  # (K, K): their posterior covariance
-    residual: Float64Array  # brightness less the model's; NaN where nothing counts
+    log_light: Float64Array  # log2 of the light of each observation
+    residual: Float64Array  # of the same shape: brightness less the model's; NaN where nothing counts
 
     def response(self, *, log_white: float = 0.0) -> ResponseCurve:
         """Return the response; `log_white` is log2 of the irradiance of white in the units of the fit."""
         return CurveModel.load().response(self.weights, log_white=log_white)
-
-    def log_inverse(self, brightness: Float64Array) -> Float64Array:
-        """Return log2 of the irradiance that makes `brightness`."""
-        return CurveModel.load().log_irradiance(self.weights, brightness)
 
     def deviations(self, codes: Float64Array) -> tuple[float, float]:
         """Return the posterior standard deviations of shape and scale at some codes in 0 to 1, in stops."""
@@ -47,30 +45,33 @@ class FittedResponse:
         drawn = rng.multivariate_normal(self.weights, self.covariance, size=DRAWS, method="eigh")
         stops = np.stack([CurveModel.load().log_irradiance(weights, codes) for weights in drawn])
         off = stops - stops.mean(axis=0)
-        scales = off.mean(axis=1)
-        return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
+        return float(np.sqrt(off.var(axis=1).mean())), float(off.mean(axis=1).std())
 
 
 class ResponseProblem(ABC):
     """Least squares for a response and the light of N observations.
 
-    The first unknowns are the K weights of the response; a subclass says how the R others make the light. An
-    observation that is white costs only where the response is below white, one of infinite deviation nothing.
+    The first unknowns are the K weights of the response; a subclass says how the R others make the light. These lie
+    around 0, with deviations `spread` and Huber's tails. An observation that is white costs only where the response is
+    below white, one of infinite deviation nothing.
     """
 
-    def __init__(self, brightness: Float64Array, deviation: Float64Array, is_white: BoolArray) -> None:
+    def __init__(
+        self, brightness: Float64Array, deviation: Float64Array, is_white: BoolArray, spread: Float64Array
+    ) -> None:
         self.model = CurveModel.load()
         self.size = len(self.model.center)
         self.brightness, self.deviation, self.is_white = brightness, deviation, is_white
-        self.starts = np.zeros(0, np.intp)
+        self.center, self.spread = np.append(self.model.center, 0 * spread), np.append(np.ones(self.size), spread)
+        self.starts = np.zeros(0, np.intp)  # the first observation of each sample whose irradiance is unknown
 
     @abstractmethod
     def light(self, state: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return log2 of the light of every observation, (N,), and its derivatives by the other unknowns, (N, R)."""
 
     @abstractmethod
-    def prior(self, others: Float64Array) -> tuple[float, Float64Array, Float64Array]:
-        """Return what the other unknowns cost by themselves, half its gradient and half its second derivatives."""
+    def constraint(self, others: Float64Array) -> tuple[float, Float64Array]:
+        """Return an error of the other unknowns together, in standard deviations, and its derivatives, (R,)."""
 
     def solved(self, state: Float64Array) -> Float64Array:
         """Return the unknowns of least cost, from a start, by Gauss-Newton with Levenberg and Marquardt's damping.
@@ -94,17 +95,16 @@ class ResponseProblem(ABC):
 
     def cost(self, state: Float64Array) -> float:
         """Return the sum of squares of errors in standard deviations, with Huber's straight lines (Eq. C.2)."""
-        weights, others = state[: self.size], state[self.size :]
-        off, _ = self.off(weights, self.light(state)[0])
-        observed = float(huber_cost(off / self.deviation).sum()) / DEFLATION
-        lacking, _ = self.model.low_slopes(weights)
-        return observed + float(np.sum((weights - self.model.center) ** 2) + lacking @ lacking) + self.prior(others)[0]
+        off, _ = self.off(state, self.light(state)[0])
+        lacking, _ = self.model.low_slopes(state[: self.size])
+        weights, others = np.split((state - self.center) / self.spread, [self.size])
+        own = weights @ weights + huber_cost(others).sum() + self.constraint(state[self.size :])[0] ** 2
+        return float(huber_cost(off / self.deviation).sum() / DEFLATION + lacking @ lacking + own)
 
     def normal_equations(self, state: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return half the gradient of the cost, and half its second derivatives by Gauss and Newton."""
-        weights, others = state[: self.size], state[self.size :]
         log_light, by_others = self.light(state)
-        off, slope = self.off(weights, log_light)
+        off, slope = self.off(state, log_light)
         rows = np.hstack([self.model.gradient(log_light), slope[:, None] * by_others])
         precision = huber_weight(off / self.deviation) / self.deviation**2 / DEFLATION * (off != 0)
         weighted = rows * precision[:, None]
@@ -112,31 +112,34 @@ class ResponseProblem(ABC):
         coupling = np.add.reduceat(weighted * slope[:, None], self.starts)
         diagonal = np.add.reduceat(precision * slope**2, self.starts) + 1e-6
         matrix -= coupling.T @ (coupling / diagonal[:, None])  # Schur complement
-        lacking, low = self.model.low_slopes(weights)
-        gradient[: self.size] += weights - self.model.center - lacking @ low
-        matrix[: self.size, : self.size] += np.eye(self.size) + low.T @ low
-        _, pull, stiffness = self.prior(others)
-        gradient[self.size :] += pull
-        matrix[self.size :, self.size :] += stiffness
+        stiffness = self.spread**-2
+        stiffness[self.size :] *= huber_weight((state / self.spread)[self.size :])
+        gradient += stiffness * (state - self.center)
+        matrix += np.diag(stiffness)
+        lacking, low = self.model.low_slopes(state[: self.size])
+        gradient[: self.size] -= lacking @ low
+        matrix[: self.size, : self.size] += low.T @ low
+        error, row = self.constraint(state[self.size :])
+        gradient[self.size :] += error * row
+        matrix[self.size :, self.size :] += np.outer(row, row)
         return gradient, matrix
 
-    def off(self, weights: Float64Array, log_light: Float64Array) -> tuple[Float64Array, Float64Array]:
+    def off(self, state: Float64Array, log_light: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return brightness less the model's, and its slope; 0 and 0 where a white observation costs nothing."""
-        brightness, slope = self.model.brightness(weights, log_light)
+        brightness, slope = self.model.brightness(state[: self.size], log_light)
         is_met = self.is_white & (brightness >= WHITE_BRIGHTNESS)
         off = np.where(self.is_white, WHITE_BRIGHTNESS, self.brightness) - brightness
         return np.where(is_met, 0, off), np.where(is_met, 0, slope)
 
     def covariance(self, state: Float64Array) -> Float64Array:
         """Return the posterior covariance of the weights, shape (K, K)."""
-        inverse = np.linalg.inv(self.normal_equations(state)[1])
-        return np.asarray(inverse[: self.size, : self.size], dtype=np.float64)
+        return np.asarray(np.linalg.inv(self.normal_equations(state)[1])[: self.size, : self.size])
 
 
 def rms_codes(residual: Float64Array) -> float:
     """Return the root mean square of what counts of a residual, white = 255; NaN if nothing does."""
-    counted = residual[np.isfinite(residual)]
-    return float(255 * np.sqrt(np.mean(counted**2))) if len(counted) else float("nan")
+    counts = np.isfinite(residual)
+    return float(255 * np.sqrt(np.mean(residual[counts] ** 2))) if counts.any() else math.nan
 
 
 def huber_cost(scaled: Float64Array) -> Float64Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, CurveModel
-from crfnet_core.calibration.robust import FittedResponse, ResponseProblem, huber_cost, huber_weight
+from crfnet_core.calibration.robust import FittedResponse, ResponseProblem, huber_weight
 from crfnet_core.types import Float64Array
 
 #: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around
@@ -23,16 +23,10 @@ MOST_STEPS, LAST_STEP = 12, 1e-4
 
 @dataclass(frozen=True, eq=False)
 class StackFit(FittedResponse):
-    """The response, exposures and irradiances that explain a stack."""
+    """The response and exposures that explain a stack, and the light of M samples in T frames, (M, T)."""
 
     offsets: Float64Array  # (T, C): stops by which each frame is brighter than its label, in each channel
-    #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; white is 0.
-    log_irradiance: Float64Array
     cost: float  # Eq. C.2
-
-    def exposed(self, exposures: Float64Array, seen: Observations) -> Float64Array:
-        """Return log2 of the irradiance of every sample in every frame, shape (M, T)."""
-        return self.log_irradiance[:, None] + exposures + self.offsets.T[seen.channel]
 
 
 def fit_stack(seen: Observations, exposures: Float64Array, weights: Float64Array) -> StackFit:
@@ -41,16 +35,16 @@ def fit_stack(seen: Observations, exposures: Float64Array, weights: Float64Array
     Source: the model of Mann and Picard (1995) and of Debevec and Malik (1997), with the response as a forward model.
     """
     problem = _StackProblem(seen, exposures, weights)
-    state = problem.solved(np.append(weights, np.zeros(problem.offsets.shape[-1])))
-    offsets, irradiance = problem.offsets @ state[problem.size :], problem.irradiance(state)
-    log_light = irradiance[:, None] + exposures + offsets.T[seen.channel]
+    state = problem.solved(np.append(weights, problem.center[problem.size :]))
+    offsets = problem.offsets @ state[problem.size :]
+    log_light = problem.irradiance(state)[:, None] + exposures + offsets.T[seen.channel]
     brightness, _ = problem.model.brightness(state[: problem.size], log_light)
     return StackFit(
         weights=state[: problem.size],
-        offsets=offsets,
-        log_irradiance=irradiance,
         covariance=problem.covariance(state),
+        log_light=log_light,
         residual=np.where(seen.is_used, seen.brightness - brightness, np.nan),
+        offsets=offsets,
         cost=problem.cost(state),
     )
 
@@ -71,20 +65,23 @@ def rough_irradiance(seen: Observations, exposures: Float64Array, weights: Float
 class _StackProblem(ResponseProblem):
     """Least squares for a stack: the unknowns beside the weights make the offsets of its frames by way of `offsets`.
 
-    The irradiances of the samples are thousands, but each touches a few observations only.
+    These are the time of a frame, which its channels share, and the white balance of each channel but green. The
+    irradiances of the samples are thousands, but each touches a few observations only.
     """
 
     def __init__(self, seen: Observations, exposures: Float64Array, weights: Float64Array) -> None:
         self.sample, self.frame = at = np.nonzero(seen.is_used | seen.is_white)
-        super().__init__(seen.brightness[at], seen.deviation[at], seen.is_white[at])
+        channels = int(seen.channel.max()) + 1
+        spread = np.tile([TIME_DEVIATION] + [BALANCE_DEVIATION] * (channels - 1), len(exposures))
+        super().__init__(seen.brightness[at], seen.deviation[at], seen.is_white[at], spread)
+        each = np.insert(np.eye(channels)[:, np.arange(channels) != channels // 2], 0, 1, axis=1)
+        self.offsets = np.asarray(np.kron(np.eye(len(exposures))[:, None], each), dtype=np.float64)  # (T, C, R)
         self.log_irradiance = rough_irradiance(seen, exposures, weights)
         self.starts = np.flatnonzero(np.diff(self.sample, prepend=-1))
-        self.offsets = _offsets(len(exposures), int(seen.channel.max()) + 1)
         self.exposure = exposures[self.frame]
         self.rows = self.offsets[self.frame, seen.channel[self.sample]]
-        green = self.offsets[:, self.offsets.shape[1] // 2]
-        slope = (exposures - exposures.mean()) @ green / (np.ptp(exposures) ** 2 * len(exposures) / 12)
-        self.trend = slope / TREND_DEVIATION
+        slope = (exposures - exposures.mean()) / (np.ptp(exposures) ** 2 * len(exposures) / 12)
+        self.trend = np.asarray(slope @ self.offsets[:, channels // 2] / TREND_DEVIATION, dtype=np.float64)
 
     def light(self, state: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return log2 of the light, and its derivatives by the offsets' unknowns at constant irradiance."""
@@ -98,7 +95,7 @@ class _StackProblem(ResponseProblem):
         """Return log2 of the irradiance that explains each sample best, shape (M,), near `log_irradiance`."""
         stops, found = self.stops(state), self.log_irradiance
         for _ in range(MOST_STEPS):
-            off, slope = self.off(state[: self.size], found[self.sample] + stops)
+            off, slope = self.off(state, found[self.sample] + stops)
             pull = huber_weight(off / self.deviation) * slope / self.deviation**2
             step = np.clip(self._sums(pull * off) / (self._sums(pull * slope) + 1e-5), -1, 1)
             found = np.clip(found + step, LOWEST, HIGHEST + 8)
@@ -106,11 +103,9 @@ class _StackProblem(ResponseProblem):
                 break
         return np.asarray(found)
 
-    def prior(self, others: Float64Array) -> tuple[float, Float64Array, Float64Array]:
-        """Return the cost of offsets: they are normal but for Huber's tails, and green has no trend."""
-        weight, trend = huber_weight(others), self.trend @ others
-        cost = float(huber_cost(others).sum() + trend**2)
-        return cost, weight * others + self.trend * trend, np.diag(weight) + np.outer(self.trend, self.trend)
+    def constraint(self, others: Float64Array) -> tuple[float, Float64Array]:
+        """Return the trend of green's offsets, which is 0."""
+        return float(self.trend @ others), self.trend
 
     def normal_equations(self, state: Float64Array) -> tuple[Float64Array, Float64Array]:
         """Return the same; the next irradiances are near the ones here."""
@@ -120,14 +115,3 @@ class _StackProblem(ResponseProblem):
     def _sums(self, values: Float64Array) -> Float64Array:
         """Return the sums over the observations of every sample, shape (M,)."""
         return np.bincount(self.sample, values, len(self.log_irradiance)).astype(np.float64)
-
-
-def _offsets(frames: int, channels: int) -> Float64Array:
-    """Return the offsets of frames, shape (T, C, R), by unknowns of standard deviation 1.
-
-    These are the time of a frame, which its channels share, and the white balance of each channel but green.
-    """
-    shared = np.full((channels, 1), TIME_DEVIATION)
-    balance = BALANCE_DEVIATION * np.delete(np.eye(channels), channels // 2, axis=1)
-    each = np.hstack([shared, balance])
-    return np.asarray(np.kron(np.eye(frames)[:, None], each), dtype=np.float64)

@@ -1,10 +1,4 @@
-"""Measured responses of cameras, one JSON file each, to be used in the place of an estimate.
-
-- `camera`: a camera, and the rule for its name.
-- `documents`: the same as JSON, and the document of a calibration as a camera.
-- `library`: the cameras in a folder: the user's own, and those that come with this project.
-- `answer`: a camera's response as an estimate, and the cameras of a photograph's make and model.
-"""
+"""Measured responses of cameras, one JSON file each, to be used in the place of an estimate."""
 
 from crfnet_core.library.answer import camera_estimate, offered_cameras, with_camera
 from crfnet_core.library.camera import Camera, CameraSettings

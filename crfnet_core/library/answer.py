@@ -49,11 +49,10 @@ def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
     recognition: no stored response makes log footage a photograph.
     """
     answer, own = camera_estimate(camera), camera.settings.camera
-    others = [
-        origin.camera for origin in estimate.origins if own and origin.camera.casefold() not in ("", own.casefold())
-    ]
     notices = input_warnings(estimate.recognition, estimate.origins)
-    notices += [Notice("other_camera", {"other": other, "name": camera.name, "camera": own}) for other in others]
+    for origin in estimate.origins:
+        if own and origin.camera.casefold() not in ("", own.casefold()):
+            notices.append(Notice("other_camera", {"other": origin.camera, "name": camera.name, "camera": own}))
     notices += answer.warnings
     return replace(
         answer,

@@ -19,9 +19,6 @@ CAMERA_VERSION = 1
 #: Bounds of sensitivities, and of standard deviations in stops: far beyond all that is measured.
 LARGEST_ISO, LARGEST_DEVIATION = 1e9, 100.0
 
-#: Kind of a document -> the code of a file that does not hold one.
-_NOT_A = {"camera": "not_a_camera", "calibration": "not_a_calibration"}
-
 #: Errors of a document that holds other values than a camera needs.
 _DAMAGES = (CRFNetError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
 
@@ -44,23 +41,18 @@ def read_camera(path: Path) -> Camera:
 
     Raise CameraError if the file cannot be read, is damaged, holds no measured response, or is of a later version.
     """
-    name, document = checked_name(path.stem), _read_object(path, kind="camera")
-    if (version := document.get("camera_version")) != CAMERA_VERSION:
-        raise CameraError("camera_version", path=path, version=version, needed=CAMERA_VERSION)
-    if document.get("measured") is None:
-        raise CameraError("camera_not_measured", path=path)
-    try:
-        return _measured(name, document["measured"])
-    except _DAMAGES as problem:
-        raise CameraError("damaged_camera", path=path, reason=problem) from None
+    return _camera(path, checked_name(path.stem), _read_object(path, "camera"))
 
 
 def read_calibration(path: Path, name: str | None = None) -> Camera:
-    """Return the camera that a calibration measured, from its JSON document; by default named as the file.
+    """Return the camera in the JSON document of a calibration, or of a camera; by default named as the file.
 
-    Raise CameraError if the file cannot be read, holds no calibration, or the name breaks the rule of `checked_name`.
+    Raise CameraError if the file cannot be read, holds neither, or the name breaks the rule of `checked_name`.
     """
-    name, document = checked_name(path.stem if name is None else name), _read_object(path, kind="calibration")
+    name = checked_name(path.stem if name is None else name)
+    document = _read_object(path, "calibration", "camera")
+    if document["kind"] == "camera":
+        return _camera(path, name, document)
     try:
         used = [frame for frame in document["frames"] if frame["used"]]
         entry = {
@@ -78,6 +70,18 @@ def read_calibration(path: Path, name: str | None = None) -> Camera:
         raise CameraError("damaged_calibration", path=path, reason=problem) from None
 
 
+def _camera(path: Path, name: str, document: Mapping[str, Any]) -> Camera:
+    """Return the camera in its own document."""
+    if (version := document.get("camera_version")) != CAMERA_VERSION:
+        raise CameraError("camera_version", path=path, version=version, needed=CAMERA_VERSION)
+    if document.get("measured") is None:
+        raise CameraError("camera_not_measured", path=path)
+    try:
+        return _measured(name, document["measured"])
+    except _DAMAGES as problem:
+        raise CameraError("damaged_camera", path=path, reason=problem) from None
+
+
 def _source(count: int, document: Mapping[str, Any]) -> str:
     """Return the files of a calibration in words."""
     if document.get("method") != "raw pairs":
@@ -85,16 +89,16 @@ def _source(count: int, document: Mapping[str, Any]) -> str:
     return f"{count} raw file{'s' * (count > 1)} (white {document['white_basis']})"
 
 
-def _read_object(path: Path, *, kind: str) -> dict[str, Any]:
-    """Return the object of some kind in a JSON file."""
+def _read_object(path: Path, *kinds: str) -> dict[str, Any]:
+    """Return the object in a JSON file, which is of one of some kinds."""
     try:
         document = read_json(path)
     except OSError as problem:
         raise CameraError("unreadable_camera", path=path, reason=problem.strerror) from None
     except ValueError:
         document = None
-    if not isinstance(document, dict) or document.get("kind") != kind:
-        raise CameraError(_NOT_A[kind], path=path)
+    if not isinstance(document, dict) or document.get("kind") not in kinds:
+        raise CameraError(f"not_a_{kinds[0]}", path=path)
     return document
 
 

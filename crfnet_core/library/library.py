@@ -23,11 +23,7 @@ SHIPPED = Path(__file__).parents[1] / "data" / "cameras"
 
 @dataclass(frozen=True)
 class CameraLibrary:
-    """Cameras in a folder.
-
-    A file is named after its camera and written whole, so that nothing needs a lock, and copying a file hands its
-    camera on.
-    """
+    """Cameras in a folder, each in a file of its name, written whole: nothing needs a lock, and a copy hands one on."""
 
     folder: Path  # the folder; it need not exist
 
@@ -63,8 +59,7 @@ class CameraLibrary:
     def save(self, camera: Camera, *, overwrite: bool = False) -> Path:
         """Write a camera and return its file; the folder is made if it is absent.
 
-        Raise CameraError if there is a camera of this name that may not be replaced, or the folder cannot be written
-        to.
+        Raise CameraError if there is a camera of this name that may not be replaced, or the folder cannot be written.
         """
         path = self.file_of(camera.name)
         if path and not overwrite:
@@ -73,8 +68,8 @@ class CameraLibrary:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as problem:
-            reason = problem.strerror
-            raise CameraError("camera_folder", folder=self.folder, reason=reason, variable=DATA_VARIABLE) from None
+            facts = {"folder": self.folder, "reason": problem.strerror, "variable": DATA_VARIABLE}
+            raise CameraError("camera_folder", **facts) from None
         atomic_write_text(path, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
         return path
 

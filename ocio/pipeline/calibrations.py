@@ -1,11 +1,10 @@
 """The folder that `crfnet calibrate` writes: LUTs, a config, a sheet and a JSON document; responses to compare with."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.calibration import Comparison
 from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.photograph.image_io import RAW_SUFFIXES
@@ -45,7 +44,9 @@ def is_pairs(paths: Sequence[Path]) -> bool:
     return any(path.suffix.lower() in RAW_SUFFIXES or path.is_dir() for path in paths)
 
 
-def write_calibration(plan: OutputPlan, calibration: Measured, comparison: Comparison | None = None) -> dict[str, Any]:
+def write_calibration(
+    plan: OutputPlan, calibration: Measured, comparison: Mapping[str, float] | None = None
+) -> dict[str, Any]:
     """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
 
     Raise CRFNetError if a file cannot be written; the folder is then as it was.

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.calibration import Calibration, Comparison, PairCalibration
+from crfnet_core.calibration import Calibration, PairCalibration
 from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.types import plain_values
@@ -55,14 +55,14 @@ def _pair_words(calibration: PairCalibration) -> str:
     return f"One curve and one color matrix explain the JPEG to {residual}{apart}.{corner}"
 
 
-def comparison_lines(comparison: Comparison) -> list[str]:
+def comparison_lines(comparison: Mapping[str, float]) -> list[str]:
     """Return how far another response is from the measured one, in plain words."""
-    percent = brightness_percent(comparison.estimation_error)
+    distance, linear = comparison["estimation_error"], comparison["linearization_error"]
     return [
         "",
-        f"The other response is off by {comparison.shape_error:.2f} stop in shape and"
-        f" {comparison.scale_error:+.2f} stop in scale: E_est {comparison.estimation_error:.2f} ({percent:.1f} % of the"
-        f" brightness range), E_lin {comparison.linearization_error:.4f} on the best exposed frame.",
+        f"The other response is off by {comparison['shape_error']:.2f} stop in shape and"
+        f" {comparison['scale_error']:+.2f} stop in scale: E_est {distance:.2f} ({brightness_percent(distance):.1f} %"
+        f" of the brightness range), E_lin {linear:.4f} on the best exposed frame.",
     ]
 
 
@@ -77,7 +77,7 @@ def calibration_provenance(calibration: Measured) -> tuple[str, ...]:
 
 
 def calibration_document(
-    calibration: Measured, files: OutputFiles, comparison: Comparison | None = None
+    calibration: Measured, files: OutputFiles, comparison: Mapping[str, float] | None = None
 ) -> dict[str, Any]:
     """Return a measured response, ready for JSON; file names are relative to the folder."""
     own = _pair_document(calibration) if isinstance(calibration, PairCalibration) else _stack_document(calibration)
@@ -91,7 +91,7 @@ def calibration_document(
         "uncertainty_parts": {"shape": rounded(uncertainty.shape), "scale": rounded(uncertainty.scale)},
         "residual_codes": rounded(calibration.residual),
         "warnings": [str(warning) for warning in calibration.warnings],
-        "comparison": None if comparison is None else rounded(vars(comparison)),
+        "comparison": None if comparison is None else rounded(comparison),
         "weights": rounded(calibration.weights),
         "response": {"brightness": plain_values(calibration.curve.brightness)},
         "color_space": files.color_space,

@@ -42,7 +42,7 @@ SEED = 0
 class Cells:
     """N cells of one pair or several."""
 
-    light: Float64Array  # (N, 3): raw, balanced
+    light: Float64Array  # (N, 3): raw, balanced; once shots are joined, a white surface saturates at 1
     codes: Float64Array  # (N, 3): mean code, in 8 bits
     deviation: Float64Array  # (N, 3): expected standard deviation of the same
     is_open: BoolArray  # (N, 3): whether no pixel is clipped
@@ -102,13 +102,10 @@ def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: 
 def _raw_cells(
     raw: RawPicture, place: Registration, shape: tuple[int, ...], side: int
 ) -> tuple[Float64Array, BoolArray, BoolArray]:
-    """Return the balanced light of cells of a JPEG of some shape, (rows, columns, 3), which are saturated, and inside.
-
-    The raw light is interpolated at several points along each side of a cell.
-    """
+    """Return the balanced light of the cells of a JPEG, (rows, columns, 3), which are saturated, and which inside."""
     height, width = shape[:2]
     scale = np.exp(place.place[0]) * max(raw.light.shape) / max(shape)
-    count = int(np.clip(np.ceil(side * scale), FEWEST_SAMPLES, MOST_SAMPLES))
+    count = int(np.clip(np.ceil(side * scale), FEWEST_SAMPLES, MOST_SAMPLES))  # along each side of a cell
     down, right = ((np.arange(length // side * count) + 0.5) * side / count for length in (height, width))
     y, x = np.meshgrid((2 * down - height) / width, (2 * right - width) / width, indexing="ij")
     turned, near_saturated = place.turned(raw.light), maximum_filter(place.turned(raw.is_saturated), 3)
@@ -125,5 +122,5 @@ def _picked(light: Float64Array, spread: Float64Array) -> IndexArray:
     """Return the positions of the flattest cells of every brightness, and of others at random, for their colors."""
     rng = np.random.default_rng(SEED)
     bins = np.floor(np.log2(np.maximum(light, 2.0**-14)) / BIN)
-    parts = members_of_bins(bins, spread)
-    return np.concatenate([np.append(part[:PER_BIN], rng.permutation(part[PER_BIN:])[:PER_BIN]) for part in parts])
+    picked = [(part[:PER_BIN], rng.permutation(part[PER_BIN:])[:PER_BIN]) for part in members_of_bins(bins, spread)]
+    return np.concatenate([part for parts in picked for part in parts])

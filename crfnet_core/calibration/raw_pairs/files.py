@@ -53,11 +53,10 @@ def find_pairs(paths: Sequence[Path]) -> tuple[tuple[Path, Path | None], ...]:
         raise CalibrationError("no_raw_file", path=paths[0])
     if len(raws) == len(given) == 1:
         return ((raws[0], given[0]),)
-    pairs = tuple((raw, _jpeg_of(raw, given)) for raw in raws)
-    for path in given:
-        if path not in [jpeg for _, jpeg in pairs]:
-            raise CalibrationError("jpeg_without_raw", path=path)
-    return pairs
+    pairs = {raw: _jpeg_of(raw, given) for raw in raws}
+    if alone := [path for path in given if path not in pairs.values()]:
+        raise CalibrationError("jpeg_without_raw", path=alone[0])
+    return tuple(pairs.items())
 
 
 def read_pair(path: Path, jpeg: Path | None, *, accept_edited: bool = False) -> Pair:

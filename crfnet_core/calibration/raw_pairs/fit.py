@@ -38,21 +38,14 @@ class PairFit(FittedResponse):
     corner: float  # stops by which the corner is brightened
     tilts: Float64Array  # (S, 2): stops a place (see `Cells.place`) by which each shot brightens, right and down
     offsets: Float64Array  # (S,): stops by which each shot is brighter than the first; its own is 0
-    log_light: Float64Array  # (N, 3), as `residual`: log2 of the light of every cell
     state: Float64Array  # all unknowns: see `_PairProblem`
     headroom: float  # stops by which raw saturation of a white surface lies above white
     outliers: float  # fraction of what could count that fits in no way
 
 
-def fit_pairs(
-    cells: Cells, saturation: float, start: PairFit | None = None, *, headroom: tuple[float, float] = HEADROOM
-) -> PairFit:
-    """Return the response and matrix that explain cells.
-
-    `saturation` is the balanced raw light at which a white surface saturates, `headroom` the stops by which that lies
-    above white, and their standard deviation.
-    """
-    problem = _PairProblem(cells, saturation, headroom)
+def fit_pairs(cells: Cells, start: PairFit | None = None, *, headroom: tuple[float, float] = HEADROOM) -> PairFit:
+    """Return the response and matrix that explain cells, given the prior of `PairFit.headroom`."""
+    problem = _PairProblem(cells, headroom)
     state = problem.start() if start is None else start.state
     problem.reweight(state, np.hypot(1, problem.chroma))
     for number in range(ROUNDS):
@@ -68,17 +61,16 @@ class _PairProblem(ResponseProblem):
     are the three channels of one cell after the other.
     """
 
-    def __init__(self, cells: Cells, saturation: float, headroom: tuple[float, float]) -> None:
+    def __init__(self, cells: Cells, headroom: tuple[float, float]) -> None:
         codes, self.is_open = cells.codes, cells.is_open & ~cells.is_saturated[:, None]
-        near_white = cells.is_white & (codes.min(axis=1, keepdims=True) > 200)
-        is_white = near_white & ~cells.is_saturated[:, None]
-        super().__init__(codes.ravel() / 255, cells.deviation.ravel() / 255, is_white.ravel())
-        self.cells, self.expected, self.saturation = cells, headroom, np.full(3, saturation)
+        is_white = cells.is_white & (codes.min(axis=1, keepdims=True) > 200) & ~cells.is_saturated[:, None]
+        self.cells, self.expected, shots = cells, headroom, cells.shot.shape[1]
         tilts = (cells.shot[:, :, None] * cells.place[:, None]).reshape(len(codes), -1)
         corner = (cells.place**2).sum(axis=1)
         self.causes = np.column_stack([cells.surroundings, corner, tilts, cells.shot[:, 1:]])
-        others = [TILT_DEVIATION] * tilts.shape[1] + [SHOT_DEVIATION] * (cells.shot.shape[1] - 1)
-        self.precision = np.array([LOCAL_DEVIATION, CORNER_DEVIATION, *others]) ** -2.0
+        of_shots = [TILT_DEVIATION] * 2 * shots + [SHOT_DEVIATION] * (shots - 1)
+        spread = np.array([MATRIX_DEVIATION] * 9 + [LOCAL_DEVIATION, CORNER_DEVIATION, *of_shots])
+        super().__init__(codes.ravel() / 255, cells.deviation.ravel() / 255, is_white.ravel(), spread)
         self.chroma = np.ptp(codes, axis=1, keepdims=True) / np.maximum(codes.max(axis=1, keepdims=True), 1) / 0.35
 
     def start(self) -> Float64Array:
@@ -86,7 +78,9 @@ class _PairProblem(ResponseProblem):
         light = in_camera_mean().inverse(self.cells.codes / 255)
         known = self.is_open & (self.cells.codes > 20) & (self.cells.light > 1e-4)
         scale = np.exp2(np.median(np.log2(light[known] / self.cells.light[known])))
-        return np.concatenate([self.model.center, (scale * np.eye(3)).ravel(), 0 * self.precision])
+        state = self.center.copy()
+        state[self.size : self.size + 9] = (scale * np.eye(3)).ravel()
+        return state
 
     def unpacked(self, state: Float64Array) -> PairFit:
         """Return the fit, with its covariance."""
@@ -106,7 +100,7 @@ class _PairProblem(ResponseProblem):
             log_light=log_light,
             residual=np.where(counts & self.is_open, self.cells.codes / 255 - brightness, np.nan),
             state=state,
-            headroom=self.headroom(matrix.reshape(3, 3)),
+            headroom=_headroom(matrix.reshape(3, 3).sum(axis=1)),
             outliers=float(1 - counts[self.counts(state)].mean()),
         )
 
@@ -123,19 +117,11 @@ class _PairProblem(ResponseProblem):
         matrix = state[self.size : self.size + 9].reshape(3, 3)
         return np.maximum(self.cells.light @ matrix.T, FLOOR)
 
-    def prior(self, others: Float64Array) -> tuple[float, Float64Array, Float64Array]:
-        """Return the cost of the causes, and of the distance of raw saturation from white."""
-        matrix = others[:9].reshape(3, 3)
-        off = (self.headroom(matrix) - self.expected[0]) / self.expected[1]
-        slope = self.saturation / (np.log(2) * 3 * (matrix @ self.saturation))[:, None] / self.expected[1]
-        row = np.append(slope.ravel(), 0 * self.precision)
-        precision = np.append(np.full(9, MATRIX_DEVIATION**-2), self.precision)
-        cost = float(off**2 + precision @ others**2)
-        return cost, row * off + precision * others, np.outer(row, row) + np.diag(precision)
-
-    def headroom(self, matrix: Float64Array) -> float:
-        """Return the stops by which raw saturation of white lies above white: the mean of the channels."""
-        return float(np.log2(np.maximum(matrix @ self.saturation, FLOOR)).mean())
+    def constraint(self, others: Float64Array) -> tuple[float, Float64Array]:
+        """Return the distance of raw saturation from white, less the expected one."""
+        white, (mean, deviation), row = others[:9].reshape(3, 3).sum(axis=1), self.expected, 0 * others
+        row[:9] = np.repeat(1 / (3 * np.log(2) * white), 3) / deviation
+        return (_headroom(white) - mean) / deviation, row
 
     def counts(self, state: Float64Array) -> BoolArray:
         """Return which channels of cells count: those neither clipped in a mixture, nor faint against the brightest."""
@@ -150,8 +136,13 @@ class _PairProblem(ResponseProblem):
 
     def reweight_by_errors(self, state: Float64Array, *, leaves_out: bool) -> None:
         """Set the deviations to as many times the expected ones as the typical error has, without the outliers."""
-        off, _ = self.off(state[: self.size], self.light(state)[0])
+        off, _ = self.off(state, self.light(state)[0])
         scaled = np.abs(off.reshape(-1, 3)) / self.cells.deviation * 255
         typical = max(1.0, float(np.median(scaled[self.counts(state)])) / 0.67)
         is_outlier = leaves_out & (scaled > OUTLIER * typical)
         self.reweight(state, np.where(is_outlier, np.inf, typical))
+
+
+def _headroom(white: Float64Array) -> float:
+    """Return the stops from white to the light of a saturated white surface: the mean of the channels."""
+    return float(np.log2(np.maximum(white, FLOOR)).mean())

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,9 +62,6 @@ WHITE_DEVIATIONS = {
     WhiteBasis.BRACKETED: 0.5,
 }
 
-#: Codes of the notices of white that was not seen.
-UNSEEN_WHITE = {WhiteBasis.EXTRAPOLATED: "white_extrapolated", WhiteBasis.BRACKETED: "white_bracketed"}
-
 
 def measure_pairs(
     paths: Sequence[Path], *, accept_edited: bool = False, progress: Progress | None = None
@@ -79,8 +78,7 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
-    saturation = float(np.median([pair.raw.balance.min() for pair in pairs]))  # balanced light of a white surface
-    cells, fit, basis = _measured(pairs, saturation)
+    cells, fit, basis = _measured(pairs)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
     low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
@@ -89,7 +87,7 @@ def measure_pairs(
     return PairCalibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=_uncertainty(cells, fit, curve, basis, saturation),
+        uncertainty=_uncertainty(cells, fit, curve, basis),
         residual=rms_codes(fit.residual),
         metadata=pairs[0].metadata,
         points=_points(cells, fit, counted),
@@ -104,22 +102,24 @@ def measure_pairs(
     )
 
 
-def _measured(pairs: Sequence[Pair], saturation: float) -> tuple[Cells, PairFit, WhiteBasis]:
+def _measured(pairs: Sequence[Pair]) -> tuple[Cells, PairFit, WhiteBasis]:
     """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
     curve, fit = in_camera_mean(), None
+    saturation = np.median([pair.raw.balance.min() for pair in pairs])  # balanced light of a white surface
     for _ in range(ROUNDS):
         inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
         cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
+        cells = replace(cells, light=cells.light / saturation)
         _check_counts(pairs, (cells.is_open.all(axis=1) & ~cells.is_saturated) @ cells.shot)
         top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
         if top < LEAST_TOP:
             raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
-        fit = fit_pairs(cells, saturation, fit)
+        fit = fit_pairs(cells, fit)
         curve = fit.response()
     assert fit is not None
     basis = _white_basis(cells, fit)
     if basis == WhiteBasis.RAW_CLIP:
-        fit = fit_pairs(cells, saturation, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
+        fit = fit_pairs(cells, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
     return cells, fit, basis
 
 
@@ -144,22 +144,15 @@ def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
     return WhiteBasis.EXTRAPOLATED if top > SEEN_TOP else WhiteBasis.BRACKETED
 
 
-def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis, saturation: float) -> Uncertainty:
+def _uncertainty(cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis) -> Uncertainty:
     """Return how far a response may be off: the posterior, what halves of the pictures say, and white."""
-    halves = [fit_pairs(cells.subset(cells.tile == half), saturation, fit).response() for half in (0, 1)]
-    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
-    shape, scale = fit.deviations(codes)
-    channels, white = CHANNEL_PART * _between_channels(cells, fit), WHITE_DEVIATIONS[basis]
-    end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0])) / 2
+    halves = [fit_pairs(cells.subset(cells.tile == half), fit).response() for half in (0, 1)]
+    shape, scale = fit.deviations(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255)
+    channels, apart = CHANNEL_PART * _between_channels(cells, fit), abs(scale_error(*halves)) / 2
+    white, end = WHITE_DEVIATIONS[basis], -math.log2(curve.inverse(1 - 3 / 255)) / 2
     return Uncertainty(
         {"posterior": shape, "sampling": shape_error(*halves) / 2, "channels": channels, "least": LEAST_SHAPE},
-        {
-            "posterior": scale,
-            "sampling": abs(scale_error(*halves)) / 2,
-            "white": white,
-            "end": end,
-            "least": LEAST_SCALE,
-        },
+        {"posterior": scale, "sampling": apart, "white": white, "end": end, "least": LEAST_SCALE},
     )
 
 
@@ -193,14 +186,14 @@ def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
 
 def _notices(pairs: Sequence[Pair], fit: PairFit, basis: WhiteBasis, low: float) -> tuple[Notice, ...]:
     """Return the doubts about a measurement that are not a reason to refuse it."""
-    notices = [Notice("measures_program", {"editor": pair.editor}) for pair in pairs if pair.editor]
-    if abs(fit.local) > NOTABLE_LOCAL:
-        notices.append(Notice("local_fitted", {"local": fit.local}))
-    if basis in UNSEEN_WHITE:
-        notices.append(Notice(UNSEEN_WHITE[basis]))
-    if low > SEEN_BOTTOM:
-        notices.append(Notice("dark_unseen", {"low": low}))
-    return tuple(notices)
+    doubts: list[tuple[str, Mapping[str, object], object]] = [
+        *(("measures_program", {"editor": pair.editor}, pair.editor) for pair in pairs),
+        ("local_fitted", {"local": fit.local}, abs(fit.local) > NOTABLE_LOCAL),
+        ("white_extrapolated", {}, basis is WhiteBasis.EXTRAPOLATED),
+        ("white_bracketed", {}, basis is WhiteBasis.BRACKETED),
+        ("dark_unseen", {"low": low}, low > SEEN_BOTTOM),
+    ]
+    return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
 
 
 def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[ShotReport, ...]:
@@ -223,7 +216,5 @@ def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
     """Return `PairCalibration.points`."""
     chroma = np.ptp(cells.codes, axis=1) / np.maximum(cells.codes.max(axis=1), 1)
     per_cell = (cells.shot.argmax(axis=1), np.hypot(*cells.place.T), chroma, cells.surroundings)
-    columns = [fit.log_light, cells.codes / 255, fit.residual]
-    columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
-    columns.append(np.broadcast_to(np.arange(3), counted.shape))
-    return np.stack([column[counted] for column in columns], axis=1)
+    columns = [fit.log_light, cells.codes / 255, fit.residual, *(column[:, None] for column in per_cell), np.arange(3)]
+    return np.stack([np.broadcast_to(column, counted.shape)[counted] for column in columns], axis=1)

@@ -58,13 +58,11 @@ def register(light: Float32Array, codes: Float32Array) -> Registration:
     turn = _turn(light, codes)
     logs = np.log2(np.maximum(turn.turned(light), 0) + np.float32(2e-3))
     places = [np.r_[np.log([start, start]), np.zeros(5)] for start in STARTS]
-    correlation = 0.0
     for width, blur in zip(WIDTHS, BLURS, strict=True):
         raw, luma = (gaussian_filter(_narrowed(picture, width), blur) for picture in (logs, codes))
-        fits = [_fit(raw, luma, place) for place in places]
-        place, correlation = max(fits, key=lambda fit: fit[1])
+        place, correlation = max((_fit(raw, luma, place) for place in places), key=lambda fit: fit[1])
         places = [place]
-    return replace(turn, place=places[0], correlation=correlation)
+    return replace(turn, place=place, correlation=correlation)
 
 
 def coordinates(place: Float64Array, x: Float64Array, y: Float64Array, shape: tuple[int, ...]) -> Float64Array:
@@ -88,8 +86,8 @@ def _turn(light: Float32Array, codes: Float32Array) -> Registration:
         return rank_image(_resized(picture, SMALL).astype(np.float64))
 
     seen = ranks(codes)
-    is_wide = (light.shape[1] >= light.shape[0]) == (codes.shape[1] >= codes.shape[0])
-    quarters = (0, 2) if is_wide else (1, 3)
+    is_upright = (light.shape[1] >= light.shape[0]) == (codes.shape[1] >= codes.shape[0])
+    quarters = (0, 2) if is_upright else (1, 3)
     turns = [Registration(mirrored, turn, np.zeros(7), 0.0) for mirrored in (False, True) for turn in quarters]
     return max(turns, key=lambda turn: float((ranks(turn.turned(light)) * seen).sum()))
 

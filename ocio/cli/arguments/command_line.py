@@ -153,7 +153,7 @@ def _add_camera(commands: Commands) -> None:
     parser = parts.add_command(commands, "camera", summary, CAMERA_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     addition = parts.add_action(actions, "add", "store a measured response")
-    calibration = "the JSON file of crfnet calibrate"
+    calibration = "the JSON file of crfnet calibrate, or of crfnet camera export"
     addition.add_argument("--from-calibration", type=Path, required=True, metavar="FILE", help=calibration)
     parts.add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
     parts.add_flag(addition, "--overwrite", "replace the camera of this name")

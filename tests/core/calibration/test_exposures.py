@@ -13,19 +13,19 @@ def test_exposures_are_stops_from_their_mean():
     np.testing.assert_allclose(of_times(0.25, 0.5, 1, 2).nominal, [-1.5, -0.5, 0.5, 1.5])
 
 
-def test_nominal_times_stand_for_powers_of_two():
-    """1/60 s is 2^-6 s, 1/15 s is 2^-4 s: two stops, though the labels say 2 stops too; 1/125 s to 1/60 s is one."""
-    found = of_times(1 / 125, 1 / 60, 1 / 30, 1 / 15)
-    np.testing.assert_allclose(np.diff(found.snapped), 1)
-    np.testing.assert_allclose(found.nominal[1] - found.nominal[0], np.log2(125 / 60))
-
-
 @pytest.mark.parametrize(
     ("times", "step"),
-    [((1 / 60, 1 / 50, 1 / 40, 1 / 30), 1 / 3), ((1 / 60, 1 / 45, 1 / 30, 1 / 20), 1 / 2), ((4, 5, 6, 8), 1 / 3)],
+    [
+        ((1 / 125, 1 / 60, 1 / 30, 1 / 15), 1),  # 1/60 s is 2^-6 s, 1/15 s is 2^-4 s
+        ((1 / 60, 1 / 50, 1 / 40, 1 / 30), 1 / 3),
+        ((1 / 60, 1 / 45, 1 / 30, 1 / 20), 1 / 2),
+        ((4, 5, 6, 8), 1 / 3),
+    ],
 )
-def test_thirds_and_halves_of_stops_are_distinguished(times, step):
-    np.testing.assert_allclose(np.diff(of_times(*times).snapped), step)
+def test_nominal_times_stand_for_powers_of_two(times, step):
+    found = of_times(*times)
+    np.testing.assert_allclose(np.diff(found.snapped), step)
+    np.testing.assert_allclose(np.diff(found.nominal), np.diff(np.log2(times)))
 
 
 def test_times_of_no_steps_stay_as_they_are():

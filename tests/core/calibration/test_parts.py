@@ -4,7 +4,7 @@ import pytest
 from crfnet_core.calibration.alignment import chain_of_shifts, common_parts, displacement, rank_image
 from crfnet_core.calibration.blocks import block_means, observe
 from crfnet_core.calibration.curve_model import CurveModel
-from crfnet_core.response.metrics import estimation_error, shape_error
+from crfnet_core.response.metrics import shape_error
 from tests.helpers.stacks import emor_response
 
 
@@ -39,10 +39,10 @@ def test_blocks_hold_means_spread_and_white():
     """One block of 4 x 4 pixels: half at 100, half at 255, so mean 177.5, spread 77.5, half white; green is flat."""
     codes = np.full((4, 4, 3), 51, np.uint8)
     codes[:2, :, 0], codes[2:, :, 0] = 100, 255
-    means = block_means(codes, 255)
-    np.testing.assert_allclose(means.brightness[0] * 255, [177.5, 51, 51])
-    np.testing.assert_allclose(means.spread[0] * 255, [77.5, 0, 0], atol=1e-9)
-    np.testing.assert_allclose(means.white[0], [0.5, 0, 0])
+    (brightness,), (spread,), (white,) = block_means(codes, 255)
+    np.testing.assert_allclose(brightness * 255, [177.5, 51, 51])
+    np.testing.assert_allclose(spread * 255, [77.5, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(white, [0.5, 0, 0])
 
 
 def test_partly_white_and_nearly_black_blocks_do_not_count():
@@ -57,9 +57,7 @@ def test_partly_white_and_nearly_black_blocks_do_not_count():
 @pytest.mark.parametrize("seed", range(2))
 def test_the_model_holds_emor_responses(seed):
     model, curve = CurveModel.load(), emor_response(seed)
-    again = model.response(model.weights_of(curve))
-    assert estimation_error(curve, again) < 0.1
-    assert shape_error(curve, again) < 0.02
+    assert shape_error(curve, model.response(model.weights_of(curve))) < 0.02
 
 
 def test_gradients_of_the_model_are_its_differences():

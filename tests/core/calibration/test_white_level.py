@@ -1,15 +1,19 @@
+"""A camera that clips below the largest code: its white is found, and its response is in the codes of the file."""
+
 import numpy as np
 import pytest
 
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.frames import read_frames, white_level
-from crfnet_core.response.metrics import scale_error
+from crfnet_core.library import Camera, CameraSettings, camera_estimate
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import scale_error, shape_error
 from tests.helpers.images import write_image
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
 
-#: Scenes: large flat parts, and detail in which JPEG rings.
-SCENES = ("interior", "forest", "courtyard")
+#: The code at which the camera clips, as a part of the largest, and its response.
+WHITE, RESPONSE = 240 / 255, emor_response(100)
 
 
 @pytest.fixture
@@ -18,25 +22,25 @@ def white_of(root, tmp_path):
 
     def found(scene, **options):
         light = light_of(root / "tests" / "data" / "lights" / f"{scene}.exr")[::2, ::2]
-        paths = make_stack(tmp_path, light, emor_response(100), StackOptions(frames=6, **options))
-        return 255 * white_level(read_frames(paths))
+        return 255 * white_level(read_frames(make_stack(tmp_path, light, RESPONSE, StackOptions(frames=6, **options))))
 
     return found
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize(("code", "quality"), [(240, 92), (251, 0)])
-def test_a_camera_that_clips_below_the_largest_code_is_found(white_of, scene, code, quality):
-    assert white_of(scene, white=code / 255, quality=quality) == pytest.approx(code)
-
-
 @pytest.mark.parametrize(
-    ("scene", "options"),
-    [("interior", {"quality": 0}), ("forest", {"quality": 75, "shot_noise": 1e-3}), ("courtyard", {"ceiling": 0.5})],
-    ids=["PNG", "noisy", "white unseen"],
+    ("scene", "code", "options"),
+    [
+        ("interior", 240, {"quality": 92}),
+        ("courtyard", 240, {"quality": 92}),
+        ("forest", 251, {"quality": 0}),  # detail, in which JPEG rings
+        ("courtyard", 251, {"quality": 0}),
+        ("interior", 255, {"quality": 0}),
+        ("forest", 255, {"quality": 75, "shot_noise": 1e-3}),
+        ("courtyard", 255, {"ceiling": 0.5}),
+    ],
 )
-def test_a_camera_that_clips_at_the_largest_code_is_left_alone(white_of, scene, options):
-    assert white_of(scene, **options) == 255
+def test_the_code_at_which_a_camera_clips_is_found(white_of, scene, code, options):
+    assert white_of(scene, white=code / 255, **options) == pytest.approx(code)
 
 
 @pytest.mark.parametrize(("code", "found"), [(65532, 65535), (63123, 63123)])
@@ -62,7 +66,40 @@ def test_an_even_surface_in_one_frame_is_no_white(tmp_path):
 
 def test_the_scale_of_a_detailed_stack_that_clips_at_code_251_is_right(root, tmp_path):
     """JPEG's ringing hid that white, and the scale was off by stops without a warning."""
-    light, response = light_of(root / "tests" / "data" / "lights" / "forest.exr"), emor_response(100)
-    found = calibrate_stack(make_stack(tmp_path, light, response, StackOptions(white=251 / 255)))
-    assert abs(scale_error(in_file_codes(response, 251 / 255), found.curve)) < 0.03
+    light = light_of(root / "tests" / "data" / "lights" / "forest.exr")
+    found = calibrate_stack(make_stack(tmp_path, light, RESPONSE, StackOptions(white=251 / 255)))
+    assert abs(scale_error(in_file_codes(RESPONSE, 251 / 255), found.curve)) < 0.03
     assert "white_below_largest" in {warning.code for warning in found.warnings}
+
+
+def test_a_response_in_file_codes_reaches_white_and_jumps():
+    curve = in_file_codes(ResponseCurve.gamma(2), WHITE)
+    np.testing.assert_allclose(curve.forward([0.25, 0.81]), [0.5 * WHITE, 0.9 * WHITE], atol=2e-4)
+    np.testing.assert_allclose(curve.inverse([0.5 * WHITE, WHITE, 0.98, 1]), [0.25, 1, 1, 1], atol=1e-3)
+
+
+def test_the_response_its_uncertainties_and_its_points_are_in_the_codes_of_the_file(light, tmp_path):
+    found, true = (
+        calibrate_stack(make_stack(tmp_path, light, RESPONSE, StackOptions(white=WHITE))),
+        in_file_codes(RESPONSE, WHITE),
+    )
+    assert found.white == pytest.approx(WHITE)
+    assert found.curve.inverse(WHITE) == pytest.approx(1, abs=2e-3)
+    codes = np.arange(16, 241)
+    assert np.std(np.log2(found.curve.inverse(codes / 255) / RESPONSE.inverse(codes / 240))) < 0.02
+    assert shape_error(true, found.curve) < 2 * found.uncertainty.shape_stops < 0.1
+    assert abs(scale_error(true, found.curve)) < min(0.04, 2 * found.uncertainty.scale_stops) < 0.25
+    stops, brightness, residual, _ = found.points[found.points[:, 0] < -0.1].T
+    assert 0.9 < brightness.max() / WHITE <= 1
+    off = brightness - found.curve.forward(np.exp2(stops)) - residual
+    assert np.median(np.abs(off)) < 2e-3
+
+
+def test_the_jump_to_the_largest_code_is_no_uncertainty_of_the_camera():
+    """E_est of a camera follows from stops by the slope; at the jump that would be 40 times too steep."""
+    plain, jumping = (
+        camera_estimate(Camera("a", curve, 0.02, 0.05, "8 exposures", CameraSettings()))
+        for curve in (RESPONSE, in_file_codes(RESPONSE, WHITE))
+    )
+    assert jumping.uncertainty == pytest.approx(WHITE * plain.uncertainty, rel=0.02)
+    assert jumping.verdict == plain.verdict

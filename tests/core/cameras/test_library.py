@@ -24,6 +24,14 @@ def library(tmp_path):
 
 
 @pytest.fixture
+def calibration(tmp_path):
+    """The document of a calibration, a7.json."""
+    path = tmp_path / "a7.json"
+    path.write_text(json.dumps(CALIBRATION))
+    return path
+
+
+@pytest.fixture
 def own(monkeypatch, tmp_path):
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path))
     return CameraLibrary.of_user()
@@ -46,9 +54,7 @@ def test_what_is_read_is_what_was_written(library):
 @pytest.mark.parametrize(
     ("name", "kept"), [("A7  III", "A7 III"), ("写真機 七", "写真機 七"), ("Came\u0301ra (1)", "Caméra (1)")]
 )
-def test_the_file_is_named_after_the_camera(library, name, kept):
-    calibration = library.folder.parent / "a7.json"
-    calibration.write_text(json.dumps(CALIBRATION))
+def test_the_file_is_named_after_the_camera(library, calibration, name, kept):
     assert library.save(read_calibration(calibration, name)).name == f"{kept}.json"
     assert [one.name for one in library.cameras()] == [kept]
     assert library.get(name.upper()).name == kept
@@ -61,12 +67,15 @@ def test_a_name_that_no_file_can_have_is_refused(tmp_path, name):
     assert code_of(read_calibration, tmp_path / "a.json", name) == "bad_camera_name"
 
 
-def test_a_camera_is_replaced_only_when_asked(library):
+def test_a_camera_is_replaced_only_when_asked_and_removed(library):
     library.save(camera("a", iso=(100,)))
     assert code_of(library.save, camera("A", iso=(200,))) == "camera_exists"
     assert library.get("a").settings.iso == (100,)
     library.save(camera("A", iso=(200,)), overwrite=True)
     assert [one.settings.iso for one in library.cameras()] == [(200,)]
+    library.remove("a")
+    assert library.cameras() == []
+    assert code_of(library.remove, "a") == "no_camera"
 
 
 DAMAGES = {
@@ -97,19 +106,22 @@ def test_a_damaged_file_is_refused_and_hides_no_other(library, text, code):
     assert problem.startswith(str(path))
 
 
-@pytest.mark.parametrize("change", CHANGES, ids=str)
-def test_an_entry_of_another_kind_is_refused(tmp_path, change):
+def changed(folder, change):
+    """The file of a camera whose measurement has other entries."""
     document = camera_document(camera("a"))
     document["measured"] |= change
-    (tmp_path / "a.json").write_text(json.dumps(document))
-    assert code_of(read_camera, tmp_path / "a.json") == "damaged_camera"
+    (folder / "a.json").write_text(json.dumps(document))
+    return folder / "a.json"
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=str)
+def test_an_entry_of_another_kind_is_refused(tmp_path, change):
+    assert code_of(read_camera, changed(tmp_path, change)) == "damaged_camera"
 
 
 def test_control_characters_of_a_file_are_not_printed(tmp_path):
-    document = camera_document(camera("a"))
-    document["measured"] |= {"source": "\x1b[31m6 exposures", "model": "\u202eA7", "warnings": ["a\nb"]}
-    (tmp_path / "a.json").write_text(json.dumps(document))
-    found = read_camera(tmp_path / "a.json")
+    change = {"source": "\x1b[31m6 exposures", "model": "\u202eA7", "warnings": ["a\nb"]}
+    found = read_camera(changed(tmp_path, change))
     assert (found.source, found.settings.model, found.warnings) == ("?[31m6 exposures", "?A7", ("a b",))
 
 
@@ -124,10 +136,8 @@ CALIBRATION = {
 }
 
 
-def test_a_calibration_becomes_a_camera(tmp_path):
-    path = tmp_path / "a7.json"
-    path.write_text(json.dumps(CALIBRATION))
-    found = read_calibration(path)
+def test_a_calibration_becomes_a_camera(calibration):
+    found = read_calibration(calibration)
     assert (found.name, found.settings.camera) == ("a7", "SONY ILCE-7M3")
     assert found.basis == "measured from 2 exposures, ISO 100"
     assert (found.shape_stops, found.scale_stops, found.warnings) == (0.02, 0.1, ("few frames",))
@@ -141,13 +151,6 @@ def test_other_files_are_no_calibration(tmp_path, text, code):
     if text is not None:
         (tmp_path / "a.json").write_text(text)
     assert code_of(read_calibration, tmp_path / "a.json") == code
-
-
-def test_a_camera_is_removed(library):
-    library.save(camera("a"))
-    library.remove("A")
-    assert library.cameras() == []
-    assert code_of(library.remove, "a") == "no_camera"
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path):

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -111,8 +112,8 @@ def test_plates_are_linearized_with_a_camera_as_with_its_exported_lut(run, crfne
 
 def test_a_camera_is_handed_on_as_a_file(run, measured, library, tmp_path):
     run("camera", "export", "measured", tmp_path / "given.json")
-    (tmp_path / "given.json").rename(library.folder / "handed on.json")
-    assert library.get("handed on").curve == measured.curve
+    run("camera", "add", "--from-calibration", tmp_path / "given.json", "--name", "handed on")
+    assert library.get("handed on") == replace(measured, name="handed on")
 
 
 BAD = [
