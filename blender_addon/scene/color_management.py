@@ -11,7 +11,7 @@ from .. import lazy_import
 CONFIG_NAME = "config.ocio"  # by which Blender looks for a config
 CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")  # that name Blender's config; Blender 4.5 knows the first only
 
-#: The view transforms that undo the encoding of the display, in Blender's config and in those of ACES; and all, of
+#: The view transforms that undo the encoding of the display, in Blender's config and in ACES configs; and all, of
 #: common configs, that do not darken a plate, or are not made for pictures.
 STANDARD = ("Standard", "Un-tone-mapped")
 NOT_DARKER = (*STANDARD, "Raw", "False Color", "Filmic Log")

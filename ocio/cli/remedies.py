@@ -23,7 +23,7 @@ REMEDIES: Mapping[str, str] = {
     "finished_differs": "or add --overwrite",
     "finished_foreign": "or add --overwrite",
     "finished_outdated": "or add --overwrite",
-    "primaries_differ": "give them with --primaries",
+    "primaries_differ": "or give them with --primaries",
     "primaries_unknown": "give them with --primaries",
     "single_file": "leave --frames out",
     # photograph

@@ -101,7 +101,7 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
 
 
 def _other_names(config: OCIO.Config) -> Iterator[str]:
-    """Yield the names that a color space may not have besides those of color spaces, roles, looks and views."""
+    """Yield the names that a color space may not have besides the names of color spaces, roles, looks and views."""
     yield from map(str.strip, config.getInactiveColorSpaces().split(","))
     for name in config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL):
         yield from (name, *config.getNamedTransform(name).getAliases())

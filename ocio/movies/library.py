@@ -40,7 +40,7 @@ _TRANSPORT = ((188, 0), (192, 4))
 #: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
 IPT_PROFILE, OPENING = 5, 60
 
-#: Packets of video by which a film is told from a thumbnail, or the pictures of chapters, in a stream of its own.
+#: Packets of video that distinguish a film from a thumbnail, or the pictures of chapters, in a stream of its own.
 FIRST_PACKETS = 24
 
 #: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.

@@ -154,7 +154,7 @@ class Task:
         return is_whole and record.sha256 == content_digest(self.photo)
 
     def is_outdated(self, record: PhotographRecord) -> bool:
-        """Return whether files are there that a record says to be those of other content of the photograph."""
+        """Return whether files are there that were made, by the record, of other content of the photograph."""
         return bool(record.sha256 and self.existing) and content_digest(self.photo) not in ("", record.sha256)
 
 

@@ -1,5 +1,6 @@
 """A measured response in words, as JSON, and as the provenance in LUT files."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np

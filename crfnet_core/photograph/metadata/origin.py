@@ -188,7 +188,7 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
 
 
 def _size_taken(metadata: FileMetadata, *, is_as_written: bool) -> tuple[int, int] | None:
-    """Return the size of the picture in EXIF; None without one, and for that of a preview: no camera enlarges."""
+    """Return the size of the picture in EXIF; None without one, and for a preview's: no camera enlarges."""
     size, most = metadata.exif_size, 1 if is_as_written else MOST_ENLARGED
     is_preview = size is not None and max(size) * most < max(metadata.width, metadata.height)
     return None if is_preview else size
