@@ -41,7 +41,7 @@ def read_camera(path: Path) -> Camera:
 
     Raise CameraError if the file cannot be read, is damaged, holds no measured response, or is of a later version.
     """
-    return _camera(path, checked_name(path.stem), _read_object(path, "camera"))
+    return _camera(path, checked_name(path.stem), _read_object(path, ("camera",), "not_a_camera"))
 
 
 def read_calibration(path: Path, name: str | None = None) -> Camera:
@@ -50,7 +50,7 @@ def read_calibration(path: Path, name: str | None = None) -> Camera:
     Raise CameraError if the file cannot be read, holds neither, or the name breaks the rule of `checked_name`.
     """
     name = checked_name(path.stem if name is None else name)
-    document = _read_object(path, "calibration", "camera")
+    document = _read_object(path, ("calibration", "camera"), "not_a_calibration")
     if document["kind"] == "camera":
         return _camera(path, name, document)
     try:
@@ -89,8 +89,8 @@ def _source(count: int, document: Mapping[str, Any]) -> str:
     return f"{count} raw file{'s' * (count > 1)} (white {document['white_basis']})"
 
 
-def _read_object(path: Path, *kinds: str) -> dict[str, Any]:
-    """Return the object in a JSON file, which is of one of some kinds."""
+def _read_object(path: Path, kinds: tuple[str, ...], code: str) -> dict[str, Any]:
+    """Return the object in a JSON file, or raise CameraError with a code if it is of none of some kinds."""
     try:
         document = read_json(path)
     except OSError as problem:
@@ -98,7 +98,7 @@ def _read_object(path: Path, *kinds: str) -> dict[str, Any]:
     except ValueError:
         document = None
     if not isinstance(document, dict) or document.get("kind") not in kinds:
-        raise CameraError(f"not_a_{kinds[0]}", path=path)
+        raise CameraError(code, path=path)
     return document
 
 
