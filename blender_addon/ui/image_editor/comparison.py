@@ -173,7 +173,7 @@ def _key(plate: bpy.types.Image, stops: float) -> str:
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
     """Return the code values of an image, of the frame that an editor shows: float32, shape (H, W, 3 or 4), in [0, 1].
 
-    They are the same as in an estimate and a bake. The bottom row comes first, and colors are not multiplied by alpha, which
+    They are as in an estimate and a bake. The bottom row comes first, and colors are not multiplied by alpha, which
     is left out where Blender does not take it for coverage. Raise AddonError or CRFNetError if the image cannot be
     read, or does not hold encoded values.
     """
