@@ -160,10 +160,10 @@ def test_a_spoiled_config_is_refused(copied, text, code):
 
 #: Code -> entries of model.json that are refused with it.
 OTHER_KINDS = {
-    "bad_model_config": ({"opset": "18"},),
+    "bad_model_config": ({"opset": "18"}, {"opset": True}, {"output_names": ["locations", "locations", {}]}),
     "other_kind_of_model": (
         *({"components": 7}, {"basis": "pca"}, {"input_name": "pixels"}),
-        *({"output_names": ["weights", "log_errors"]}, {"output_names": ["locations", "locations", {}]}),
+        *({"output_names": ["weights", "log_errors"]}, {"output_names": ["locations"] * 3}),
     ),
     "bad_output": ({"components": 11}, {"output_names": ["locations", "log_odds", "factors"]}),
     "failing_graph": ({"output_names": ["locations", "factors", "absent"]}, {"input_name": "windows"}),
@@ -246,5 +246,6 @@ def test_as_many_windows_run_at_the_same_time_as_cores_may_be_used(windows, monk
 
 
 def test_threads_are_not_negative():
-    with refused(ModelError, "negative_threads"):
-        ResponseNetwork.load(threads=-1)
+    for threads in (-1, 1.5, "2", True):
+        with refused(ModelError, "negative_threads"):
+            ResponseNetwork.load(threads=threads)

@@ -78,7 +78,11 @@ def test_nearest_increasing_is_the_projection(samples):
         *((ResponseCurve.from_samples, row, "curve_dark") for row in ([1.0, 0.0], [0.5, 0.5])),
         (ResponseCurve, np.zeros(SAMPLES), "curve_not_strict"),
         (ResponseCurve, np.linspace(0, 1, 10), "curve_shape"),
-        (ResponseCurve.gamma, 0, "curve_exponent"),
+        *(
+            (ResponseCurve.gamma, number, "curve_exponent")
+            for number in (0, -1, np.nan, np.inf, True, "2", None, [2.2])
+        ),
+        *((make, "x", "not_numbers") for make in (ResponseCurve, ResponseCurve.from_samples)),
     ],
 )
 def test_what_makes_no_curve_is_refused(make, argument, code):

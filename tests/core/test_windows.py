@@ -1,9 +1,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import PhotoError
 from crfnet_core.statistics.windows import WINDOW_SIZE, Window, cut_windows, filled_bins, sampling_step, select_windows
-from tests.helpers.refusals import refused
 
 
 def noise(height, width, *, codes=256, seed=0):
@@ -50,18 +48,6 @@ def test_a_poor_photograph_gets_the_best_windows_there_are():
     assert len(windows) == 5
     assert not any(window.covers_range for window in windows)
     assert min(window.filled for window in windows) >= 99
-
-
-@pytest.mark.parametrize(
-    ("height", "width", "count", "code"),
-    [
-        *((height, width, 1, "smaller_than_window") for height, width in ((226, 500), (500, 226), (1, 1))),
-        *((300, 300, count, "no_windows_asked") for count in (0, -3)),
-    ],
-)
-def test_windows_that_cannot_be_cut_are_refused(height, width, count, code):
-    with refused(PhotoError, code):
-        select_windows(noise(height, width), count=count)
 
 
 @pytest.mark.parametrize(

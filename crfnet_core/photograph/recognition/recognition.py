@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
@@ -44,14 +43,6 @@ class Recognition:
     probabilities: tuple[float, ...] = ()  # of each curve, by the levels alone
     errors: tuple[float, ...] = ()  # expected, of the light of each, in stops
     color_space: str = ""  # in ACES configs, of the curve with the least expected error; empty if it has none
-
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
-        """Return the recognition that `dataclasses.asdict` made an entry of, also after JSON; None for None."""
-        if entry is None:
-            return None
-        several = {name: tuple(entry.get(name, ())) for name in ("curves", "probabilities", "errors")}
-        return cls(**{**entry, **several, "kind": Kind(entry["kind"])})
 
 
 def recognize(

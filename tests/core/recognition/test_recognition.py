@@ -22,6 +22,7 @@ from crfnet_core.photograph.recognition.log_footage import (
     log_factor,
     nearest_curves,
 )
+from crfnet_core.types import typed_value
 from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
@@ -84,7 +85,7 @@ def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_color_
     assert list(recognition.probabilities) == sorted(recognition.probabilities, reverse=True)
     assert 0 < sum(recognition.probabilities) < 1
     assert recognition.color_space == COLOR_SPACES.get(safest, "")
-    assert Recognition.from_dict(json.loads(json.dumps(dataclasses.asdict(recognition)))) == recognition
+    assert typed_value(json.loads(json.dumps(dataclasses.asdict(recognition))), Recognition) == recognition
 
 
 def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
