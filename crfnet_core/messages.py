@@ -97,8 +97,8 @@ SENTENCES: Mapping[str, str] = {
     "damaged": "{path}: this {kind} file is damaged or cut short ({problem}); copy it again",
     "name_not_utf8": "{path}: the name is not UTF-8; rename the file or its folder",
     "no_such_photograph": "{path}: does not exist; check the name",
-    "not_an_image_file": "{path}: is not a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP file,"
-    " whatever its name says; save the photograph as one of these",
+    "not_an_image_file": "{path}: does not begin as a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP"
+    " file; save the photograph as one of these, and give an open file at its beginning",
     "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph that it came"
     " from",
     "palette": "{path}: {kind} holds at most 256 colors, mostly mixed by dither, from which no response can be"
