@@ -117,6 +117,7 @@ SENTENCES: Mapping[str, str] = {
     "flat_frame": "a flat frame: its brightness has no range, so no response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
+    "noise_frame_advice": "give a photograph of a scene",
     "limited_range": "limited range stored as full: the codes end at 16 and 235 of 255, which are black and white of"
     " video",
     "limited_range_advice": "expand the range first: when ffmpeg extracts frames, with its filter"

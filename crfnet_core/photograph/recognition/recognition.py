@@ -58,8 +58,8 @@ def recognize(
     `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
     if levels.is_flat or is_noise:
-        reason = Notice("flat_frame" if levels.is_flat else "noise_frame")
-        return _recognized(Kind.FLAT, reason, Notice("flat_frame_advice"))
+        code, advice = ("flat_frame", "flat_frame_advice") if levels.is_flat else ("noise_frame", "noise_frame_advice")
+        return _recognized(Kind.FLAT, Notice(code), Notice(advice))
     if is_limited_range(levels):
         return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
     if log_probability > RECOGNIZED:

@@ -190,10 +190,11 @@ def tagged(color):
 
 
 @pytest.mark.parametrize("codes", [(0, 0, 0), (255, 255, 255), (200, 30, 60), (128, 129, 127)])
-def test_a_flat_frame_is_recognized(codes):
+def test_a_flat_frame_is_recognized_and_advised_other_than_noise(codes):
     noise = np.random.default_rng(0).integers(0, 2, (64, 64, 1))
     levels = Levels.from_pixels(quantized((np.array(codes) + noise) / 256))
-    assert recognize(levels, log_probability=0.9).kind is Kind.FLAT
+    flat, noise = (recognize(each, log_probability=0.9, is_noise=True) for each in (levels, PLAIN_LEVELS))
+    assert (flat.kind, noise.kind, flat.advice == noise.advice) == (Kind.FLAT, Kind.FLAT, False)
 
 
 def test_twelve_bits_in_a_file_of_sixteen_are_recognized():
