@@ -19,9 +19,6 @@ Float32Array = NDArray[np.float32]
 #: Responses, weights, and what is measured.
 Float64Array = NDArray[np.float64]
 
-#: The largest finite number.
-LARGEST = sys.float_info.max
-
 #: Code values of 8 bits.
 Uint8Array = NDArray[np.uint8]
 
@@ -32,6 +29,9 @@ BoolArray = NDArray[np.bool_]
 
 #: Positions in an array.
 IndexArray = NDArray[np.intp]
+
+#: The largest finite number.
+LARGEST = sys.float_info.max
 
 
 class Pixels(Protocol):
@@ -96,8 +96,8 @@ def plain_values(value: Any) -> Any:
 def typed_value(value: Any, kind: Any) -> Any:
     """Return a plain value, as of a document, as a value of the type in an annotation; raise TypeError or ValueError.
 
-    Entries that a dataclass lacks are left out. Numbers are finite and not negative; `Annotated[int, (1, 9)]` has other
-    bounds.
+    Of a dataclass, entries that are not fields are left out. Numbers are finite and not negative, unless an annotation
+    such as `Annotated[int, (1, 9)]` states other bounds.
     """
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is UnionType:
@@ -127,7 +127,7 @@ def number_of(value: Any, kind: Any = float, *, least: float = -LARGEST, most: f
 
 
 def is_number(value: Any, kind: type = float, *, least: float = -LARGEST, most: float = LARGEST) -> bool:
-    """Return whether a value is a finite number from `least` to `most`, of kind int a whole one; True is none."""
+    """Return whether a value is a finite number in bounds, of kind int a whole one; truth values are not numbers."""
     kinds: Any = numbers.Integral if kind is int else numbers.Real
     return isinstance(value, kinds) and not isinstance(value, bool) and bool(least <= value <= most)
 

@@ -99,13 +99,14 @@ def _read_object(path: Path, *, kind: str) -> dict[str, Any]:
 def _measured(name: str, entry: Mapping[str, Any]) -> Camera:
     """Return the camera in the entry of a document."""
     make, model, software, source = _texts(entry[field] for field in ("make", "model", "software", "source"))
+    iso = tuple(sorted(number_of(each, int, least=1, most=LARGEST_ISO) for each in entry["iso"]))
     return Camera(
         name=name,
         curve=ResponseCurve(entry["brightness"]),
         shape_stops=number_of(entry["shape_stops"], least=0, most=LARGEST_DEVIATION),
         scale_stops=number_of(entry["scale_stops"], least=0, most=LARGEST_DEVIATION),
         source=source,
-        settings=CameraSettings(make, model, software, _sensitivities(entry["iso"])),
+        settings=CameraSettings(make, model, software, iso),
         warnings=_texts(entry["warnings"]),
     )
 
@@ -113,8 +114,3 @@ def _measured(name: str, entry: Mapping[str, Any]) -> Camera:
 def _texts(values: Iterable[Any]) -> tuple[str, ...]:
     """Return texts, each on one line and without control characters, since they are printed."""
     return tuple(one_line(str(value)) for value in values)
-
-
-def _sensitivities(values: Iterable[Any]) -> tuple[int, ...]:
-    """Return ISO sensitivities, sorted."""
-    return tuple(sorted(number_of(value, int, least=1, most=LARGEST_ISO) for value in values))
