@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.photo import Photo
@@ -146,7 +146,10 @@ def test_other_arrays_are_refused(code, arrays):
     assert {code_of(array, color_order=order) for array, order in arrays} == {code}
 
 
-def test_a_bit_depth_that_the_array_does_not_have_is_refused():
+def test_a_bit_depth_that_the_array_does_not_have_and_arguments_of_another_kind_are_refused():
+    for choice in ({"name": 5}, {"metadata": "Canon"}):
+        with refused(CRFNetError, "argument_kind", name=next(iter(choice))):
+            Photo.from_array(CODES, color_order="RGB", **choice)
     assert code_of(CODES.astype(np.uint16) * 5, color_order="RGB", bit_depth=10) == "array_above_bit_depth"
     assert {code_of(CODES, color_order="RGB", bit_depth=bits) for bits in (10, 4, 7.5, "8", True)} == {
         "array_bit_depth"

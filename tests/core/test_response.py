@@ -13,15 +13,11 @@ from tests.helpers.refusals import refused
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 
 
-def test_gamma_has_the_values_of_a_power_law():
+def test_gamma_has_the_values_of_a_power_law_and_other_numbers_of_samples_are_resampled():
     curve = ResponseCurve.gamma(2.0)
     np.testing.assert_allclose(curve.forward([0, 0.25, 0.64, 1]), [0, 0.5, 0.8, 1], atol=2e-4)
     np.testing.assert_allclose(curve.inverse([0, 0.5, 0.8, 1]), [0, 0.25, 0.64, 1], atol=3e-4)
-
-
-def test_other_numbers_of_samples_are_resampled():
-    curve = ResponseCurve.from_samples([0.0, 0.5, 1.0])
-    np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
+    np.testing.assert_allclose(ResponseCurve.from_samples([0.0, 0.5, 1.0]).brightness, UNIFORM, atol=1e-12)
 
 
 def test_the_transfer_functions_of_standards_are_those_of_colour_science(tolerance):
