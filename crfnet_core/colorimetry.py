@@ -62,7 +62,7 @@ class Primaries:
 
         Raise KeyError, TypeError or ValueError if it lacks one, or they are not chromaticities that span a space.
         """
-        corners = [tuple(number_of(part, most=10) for part in entry[name]) for name in CORNERS]
+        corners = [tuple(number_of(part, least=-10, most=10) for part in entry[name]) for name in CORNERS]
         red, green, blue, white = ((x, y) for x, y in corners)
         primaries = cls(str(entry["name"]), red, green, blue, white, str(entry.get("interop_id", "")))
         if not white[1] >= 0.01 or not np.linalg.cond(primaries.to_xyz()) < MOST_CONDITION:

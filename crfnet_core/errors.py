@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from crfnet_core.messages import SENTENCES
 
@@ -97,6 +98,14 @@ class CalibrationError(CRFNetError):
 
 class CameraError(CRFNetError):
     """A stored camera that is absent, damaged or cannot be written."""
+
+
+def check_kinds(**arguments: tuple[object, Any]) -> None:
+    """Raise CRFNetError for an argument that is not of its kind."""
+    for name, (value, kind) in arguments.items():
+        if not isinstance(value, kind):
+            needed = getattr(kind, "__name__", kind)
+            raise CRFNetError("argument_kind", name=name, found=type(value).__name__, needed=needed)
 
 
 def beside_limits(value: float, *limits: float) -> str:

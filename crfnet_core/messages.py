@@ -24,13 +24,13 @@ SENTENCES: Mapping[str, str] = {
     "unreadable_camera": "{path}: cannot be read ({reason}); check its name",
     # network
     "altered_model": "{folder}: model.onnx is not the file that model.json describes; restore the pair",
-    "bad_model_config": "{path}: lacks {entries}, or holds something else there; export the model again",
+    "bad_model_config": "{path}: is damaged ({problem}); export the model again",
     "bad_model_json": "{path}: is not JSON with an object; restore it",
     "bad_output": "{folder}: model.onnx answers with {name} of shape {shape} or not finite, needed is {needed}; export"
     " the model again",
     "external_weights": "{folder}: model.onnx has weights in another file, or sparse ones; export the model again",
     "failing_graph": "{folder}: model.onnx fails ({reason}); export the model again",
-    "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",
+    "negative_threads": "the number of threads must be 0 (all cores) or a whole number above, found {threads}",
     "other_kind_of_model": "{path}: is for {found} (basis, weights, window size), needed is {needed}, with evidence of"
     " windows or statistics; export the model again",
     "unloadable_graph": "{folder}: model.onnx cannot be loaded; restore it or update ({reason})",
@@ -48,10 +48,8 @@ SENTENCES: Mapping[str, str] = {
     "jxl_linear": "{path}: this JPEG XL file is decoded to linear light, as lossy ones with a camera's ICC profile are;"
     " give the original that it was made from",
     # statistics
-    "negative_seed": "a seed of {seed} draws no windows; give 0 or more",
-    "no_windows_asked": "{count} windows cannot be analyzed; ask for at least 1, usually {usual}",
-    "smaller_than_window": "the photograph is {width} x {height} pixels; at least {least} x {least} are needed: give"
-    " the original, never one scaled up",
+    "smaller_than_window": "{path}: the photograph is {width} x {height} pixels; at least {least} x {least} are needed:"
+    " give the original, never one scaled up",
     # files
     "exists": "{path}: exists already; choose another name or ask to overwrite it",
     "folder_absent": "{path}: the folder {folder} does not exist; create it first",
@@ -60,10 +58,11 @@ SENTENCES: Mapping[str, str] = {
     "not_written": "{path}: cannot be written ({reason})",
     "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
+    "curve_rows": "needed are finite numbers in rows of {length}, found shape {shape}",
     "not_numbers": "a response or a LUT needs numbers, found {kind}",
     "brightness_codes": "found values up to {found:g}, not in [0, 1]: divide code values by the largest code, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
-    "curve_exponent": "a gamma must be above 0, found {exponent}",
+    "curve_exponent": "a gamma must be a number above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",
     "curve_samples": "a response needs a row of two or more finite samples",
     "curve_shape": "a response needs shape ({samples},), found {shape}; use from_samples",
@@ -101,6 +100,8 @@ SENTENCES: Mapping[str, str] = {
     "not_a_file": "{path}: is a pipe or a device; give a file",
     "not_an_image_file": "{path}: is not a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP file,"
     " whatever its name says; save the photograph as one of these",
+    "not_an_image_file": "{path}: does not begin as a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP"
+    " file; save the photograph as one of these, and give an open file at its beginning",
     "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph that it came"
     " from",
     "palette": "{path}: {kind} holds at most 256 colors, mostly mixed by dither, from which no response can be"
@@ -119,6 +120,7 @@ SENTENCES: Mapping[str, str] = {
     "flat_frame": "a flat frame: its brightness has no range, so no response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
+    "noise_frame_advice": "give a photograph of a scene",
     "limited_range": "limited range stored as full: the codes end at 16 and 235 of 255, which are black and white of"
     " video",
     "limited_range_advice": "expand the range first: when ffmpeg extracts frames, with its filter"
@@ -143,14 +145,13 @@ SENTENCES: Mapping[str, str] = {
     "tagged_linear": "{path}: is linear already: so says its metadata ({source}). Give it a linear color space; if the"
     " tag is wrong, ignore metadata",
     # estimate: errors
+    "argument_kind": "{name} is a {found}; give a {needed}",
+    "bad_option": "the option {name}: {problem}",
     "damaged_estimate": "the document of an estimate is damaged ({problem})",
     "estimate_lacks": "the document of an estimate lacks {entry}; write it again",
-    "in_file": "{path}: {problem}",
     "list_of_estimates": "this document holds a list of estimates; give document['estimates'][0]",
     "no_photographs": "there is no photograph to analyze; give at least one",
-    "not_a_device": "{device} is not a device; give one of Device: {names}",
     "not_a_photo": "a {kind} is not a Photo; read_photo makes one from a file, Photo.from_array from an array",
-    "not_a_prior": "a {kind} is not a Prior; Prior.load makes one from a name or a file",
     "not_an_estimate": "this is not a document of an estimate: it lacks 'schema_version'",
     "other_schema": "the estimate has schema_version {found}, this version reads {known}: update it",
     # estimate: warnings; where JSON has them, their text does not change

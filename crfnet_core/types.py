@@ -1,11 +1,14 @@
-"""Names for arrays and callbacks; dataclasses of arrays: equal or not, and plain; the cores to work on."""
+"""Names for arrays and callbacks; dataclasses of arrays: equal or not; values made plain, and checked; the cores."""
 
 import dataclasses
 import math
+import numbers
 import os
+import sys
 from collections.abc import Callable, Mapping
 from enum import Enum
-from typing import Any, ClassVar, Protocol
+from types import UnionType
+from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +29,9 @@ BoolArray = NDArray[np.bool_]
 
 #: Positions in an array.
 IndexArray = NDArray[np.intp]
+
+#: The largest finite number.
+LARGEST = sys.float_info.max
 
 
 class Pixels(Protocol):
@@ -87,11 +93,43 @@ def plain_values(value: Any) -> Any:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def number_of(value: object, *, most: float = math.inf) -> float:
-    """Return a number of a document; raise ValueError for anything else, such as true, and beyond `most` or -`most`."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= most:
-        raise ValueError(f"{value!a:.20} is not a number from {-most} to {most}")
-    return float(value)
+def typed_value(value: Any, kind: Any) -> Any:
+    """Return a plain value, as of a document, as a value of the type in an annotation; raise TypeError or ValueError.
+
+    Of a dataclass, entries that are not fields are left out. Numbers are finite and not negative, unless an annotation
+    such as `Annotated[int, (1, 9)]` states other bounds.
+    """
+    origin, arguments = get_origin(kind), get_args(kind)
+    if origin is UnionType:
+        return None if value is None else typed_value(value, arguments[0])
+    if origin is tuple:
+        return tuple(typed_value(each, arguments[0]) for each in typed_value(value, list))
+    if origin is Annotated:
+        return number_of(value, arguments[0], least=arguments[1][0], most=arguments[1][1])
+    kind = origin or kind
+    if kind in (int, float):
+        return number_of(value, kind, least=0)
+    if hasattr(kind, "__dataclass_fields__"):
+        hints = get_type_hints(kind, include_extras=True)
+        return kind(**{name: typed_value(value[name], hint) for name, hint in hints.items() if name in value})
+    if issubclass(kind, Enum):
+        return kind(value)
+    if not isinstance(value, kind):
+        raise ValueError(f"{value!a:.40} is not a {kind.__name__}")
+    return value
+
+
+def number_of(value: Any, kind: Any = float, *, least: float = -LARGEST, most: float = LARGEST) -> Any:
+    """Return what `is_number` takes as a float or an int; raise ValueError for anything else."""
+    if not is_number(value, kind, least=least, most=most):
+        raise ValueError(f"{value!a:.20} is not a {'whole ' * (kind is int)}number from {least:g} to {most:g}")
+    return kind(value)
+
+
+def is_number(value: Any, kind: type = float, *, least: float = -LARGEST, most: float = LARGEST) -> bool:
+    """Return whether a value is a finite number in bounds, of kind int a whole one; truth values are not numbers."""
+    kinds: Any = numbers.Integral if kind is int else numbers.Real
+    return isinstance(value, kinds) and not isinstance(value, bool) and bool(least <= value <= most)
 
 
 def _same(one: Any, other: Any) -> bool:

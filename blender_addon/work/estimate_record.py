@@ -20,6 +20,7 @@ from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.statistics.windows import Window
+from crfnet_core.types import typed_value
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -83,12 +84,12 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         families={Family(name): share for name, share in json.loads(entries["families"]).items()},
         verdict=Verdict(entries["verdict"]),
         prior=entries["prior"],
-        origins=tuple(map(FileOrigin.from_dict, json.loads(entries["metadata"]))),
+        origins=typed_value(json.loads(entries["metadata"]), tuple[FileOrigin, ...]),
         warnings=tuple(Notice(code, facts) for code, facts in json.loads(entries["notices"])),
         model=entries["model"],
         photos=tuple(entries["photos"].splitlines()),
-        recognition=Recognition.from_dict(json.loads(entries["recognition"])),
-        camera=CameraAnswer.from_dict(json.loads(entries["camera"])),
+        recognition=typed_value(json.loads(entries["recognition"]), Recognition | None),
+        camera=typed_value(json.loads(entries["camera"]), CameraAnswer | None),
     )
 
 

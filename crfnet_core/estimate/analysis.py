@@ -2,15 +2,16 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import PhotoError, check_kinds
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, file_origin, with_stated_device
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Levels, refuse_tagged
 from crfnet_core.photograph.thumbnail import thumbnail
-from crfnet_core.statistics.windows import Window, cut_windows, select_windows
+from crfnet_core.statistics.windows import WINDOW_SIZE, Window, cut_windows, select_windows
 from crfnet_core.types import Float32Array, Float64Array, Progress, counted_from
 
 #: Samples below or above these are clipped: half an 8-bit code from either end of the range.
@@ -39,13 +40,19 @@ Photographs = Photo | CutPhotograph | Iterable[Photo | CutPhotograph]
 def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutPhotograph:
     """Return the windows of a photograph.
 
-    Raise PhotoError if it is smaller than a window, its file names an encoding with a published curve, or
-    `options.device` is not a `Device`.
+    Raise PhotoError if it is not a `Photo` or smaller than a window, or its file names an encoding with a published
+    curve.
     """
+    if not isinstance(photo, Photo):
+        raise PhotoError("not_a_photo", kind=type(photo).__name__)
+    check_kinds(options=(options, AnalysisOptions | None))
     options = options or AnalysisOptions()
     photo = photo if options.use_metadata else photo.with_metadata(None)
     refuse_tagged(photo)
-    windows = _selected_windows(photo, options)
+    height, width = photo.shape[:2]
+    if min(height, width) < WINDOW_SIZE:
+        raise PhotoError("smaller_than_window", path=photo.path, width=width, height=height, least=WINDOW_SIZE)
+    windows = select_windows(photo, count=options.windows, seed=options.seed, coverage=options.coverage)
     samples = cut_windows(photo, windows)
     return CutPhotograph(
         name=photo.path.name,
@@ -62,8 +69,8 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
 
 def cut_photographs(photos: Photographs, options: AnalysisOptions | None = None) -> tuple[CutPhotograph, ...]:
     """Return the windows of one or several photographs; raise PhotoError for anything else, such as a file's name."""
-    several: Iterable[object] = photos if isinstance(photos, Iterable) else (photos,)
-    photographs = tuple(_cut(photo, options) for photo in several)
+    several: Iterable[Any] = photos if isinstance(photos, Iterable) else (photos,)
+    photographs = tuple(each if isinstance(each, CutPhotograph) else cut_photograph(each, options) for each in several)
     if not photographs:
         raise PhotoError("no_photographs")
     return photographs
@@ -79,23 +86,6 @@ def predict_evidence(
         predictions.append(network.predict(photograph.samples, progress=counted_from(progress, done, total)))
         done += len(photograph.samples)
     return tuple(predictions)
-
-
-def _cut(photo: object, options: AnalysisOptions | None) -> CutPhotograph:
-    """Return the windows of a photograph, which may be cut already."""
-    if isinstance(photo, CutPhotograph):
-        return photo
-    if isinstance(photo, Photo):
-        return cut_photograph(photo, options)
-    raise PhotoError("not_a_photo", kind=type(photo).__name__)
-
-
-def _selected_windows(photo: Photo, options: AnalysisOptions) -> tuple[Window, ...]:
-    """Return where the windows of a photograph lie; an error names its file."""
-    try:
-        return select_windows(photo, count=options.windows, seed=options.seed, coverage=options.coverage)
-    except PhotoError as problem:
-        raise PhotoError("in_file", path=photo.path, problem=problem) from None
 
 
 def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin | None:

@@ -3,12 +3,12 @@
 `estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from crfnet_core.errors import Notice, PriorError
+from crfnet_core.errors import Notice, check_kinds
 from crfnet_core.estimate.analysis import CutPhotograph, Photographs, cut_photographs, predict_evidence
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate, WindowEstimate
@@ -71,11 +71,11 @@ def estimate_response(
     PhotoError
         If there is no photograph, one is smaller than a window, an argument of another kind is given, or a file names
         an encoding with a published curve.
-    PriorError
-        If `prior` is not a `Prior`.
+    CRFNetError
+        If another argument is of another kind.
     """
-    if prior is not None and not isinstance(prior, Prior):
-        raise PriorError("not_a_prior", kind=type(prior).__name__)
+    check_kinds(network=(network, ResponseNetwork), prior=(prior, Prior | None), bank=(bank, ResponseBank | None))
+    check_kinds(options=(options, AnalysisOptions | None), progress=(progress, Callable | None))
     photographs = cut_photographs(photos, options)
     predictions = predict_evidence(photographs, network, progress=progress)
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)

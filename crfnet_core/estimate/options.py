@@ -1,14 +1,17 @@
 """The choices of an analysis, apart from the network and the prior."""
 
 from dataclasses import dataclass
+from typing import Annotated, get_type_hints
 
+from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.metadata import Device
-from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
+from crfnet_core.statistics.windows import FULL_COVERAGE, POSITIONS_TRIED, WINDOWS_PER_PHOTOGRAPH
+from crfnet_core.types import typed_value
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnalysisOptions:
-    """How photographs are analyzed.
+    """How photographs are analyzed; raise CRFNetError if an option is of another type or out of range.
 
     Parameters
     ----------
@@ -17,15 +20,22 @@ class AnalysisOptions:
     device : Device, optional
         The kind of camera, if the user states it; it overrides the files. UNKNOWN is a camera of another kind.
     windows : int
-        Windows of each photograph.
+        Windows of each photograph, 1 to `POSITIONS_TRIED`.
     seed : int
-        Seed of the choice of windows.
+        Seed of the choice of windows, 0 or more.
     coverage : int
         Code values, of 256, that a window should hold: see `select_windows`.
     """
 
     use_metadata: bool = True
     device: Device | None = None
-    windows: int = WINDOWS_PER_PHOTOGRAPH
+    windows: Annotated[int, (1, POSITIONS_TRIED)] = WINDOWS_PER_PHOTOGRAPH
     seed: int = 0
-    coverage: int = FULL_COVERAGE
+    coverage: Annotated[int, (0, 256)] = FULL_COVERAGE
+
+    def __post_init__(self) -> None:
+        for name, kind in get_type_hints(type(self), include_extras=True).items():
+            try:
+                object.__setattr__(self, name, typed_value(getattr(self, name), kind))
+            except ValueError as problem:
+                raise CRFNetError("bad_option", name=name, problem=problem) from None

@@ -5,7 +5,7 @@ docs/estimate.schema.json describes the document. `crfnet estimate` writes it to
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -15,10 +15,11 @@ from crfnet_core.errors import EstimateError, Notice
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, LikelyKind, Verdict
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import COMPONENTS
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.statistics.windows import Window
-from crfnet_core.types import EqualByFields, Float64Array, number_of, plain_values
+from crfnet_core.types import EqualByFields, Float64Array, is_number, number_of, plain_values, typed_value
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 SCHEMA_VERSION = 1
@@ -43,11 +44,6 @@ class CameraAnswer:
 
     name: str  # the camera's, in the library
     basis: str  # the measurement that its response rests on, in words
-
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any] | None) -> Self | None:
-        """Return the answer in a document; None for an estimate of photographs alone."""
-        return None if entry is None else cls(*(entry[field.name] for field in dataclasses.fields(cls)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,22 +147,23 @@ class ResponseEstimate(EqualByFields):
         """
         _check_version(document)
         try:
+            response, shares = document["response"], document["families"].items()
             return cls(
-                curve=ResponseCurve(np.array(document["response"]["brightness"], np.float64)),
-                weights=np.array(document["weights"], np.float64),
-                windows=tuple(_windows(document["windows"])),
+                curve=ResponseCurve(_row(response["brightness"], SAMPLES, least=0, most=1)),
+                weights=_row(document["weights"], COMPONENTS),
+                windows=tuple(map(_window, typed_value(document["windows"], list))),
                 uncertainty=_number(document["uncertainty"]),
                 shape_uncertainty=_number(document["shape_uncertainty_stops"]),
-                band=np.array([document["response"][end] for end in ("lower", "upper")], np.float64),
-                families={Family(name): _number(share) for name, share in document["families"].items()},
+                band=np.array([_row(response[end], SAMPLES, least=0, most=1) for end in ("lower", "upper")]),
+                families={Family(name): number_of(share, least=0, most=1) for name, share in shares},
                 verdict=Verdict(document["verdict"]),
-                prior=document["prior"],
-                origins=tuple(map(FileOrigin.from_dict, document["metadata"])),
-                warnings=tuple(map(Notice.from_text, document["warnings"])),
-                model=document["model"],
-                photos=tuple(photo["name"] for photo in document["photographs"]),
-                recognition=Recognition.from_dict(document.get("recognition")),
-                camera=CameraAnswer.from_dict(document.get("camera")),
+                prior=typed_value(document["prior"], str),
+                origins=typed_value(document["metadata"], tuple[FileOrigin, ...]),
+                warnings=tuple(map(Notice.from_text, typed_value(document["warnings"], tuple[str, ...]))),
+                model=typed_value(document["model"], str),
+                photos=tuple(typed_value(photo["name"], str) for photo in typed_value(document["photographs"], list)),
+                recognition=typed_value(document.get("recognition"), Recognition | None),
+                camera=typed_value(document.get("camera"), CameraAnswer | None),
             )
         except KeyError as problem:
             raise EstimateError("estimate_lacks", entry=problem) from None
@@ -181,7 +178,7 @@ def _check_version(document: Mapping[str, Any]) -> None:
     version = document.get("schema_version") if isinstance(document, Mapping) else None
     if version is None:
         raise EstimateError("not_an_estimate")
-    if version != SCHEMA_VERSION:
+    if not is_number(version, int, least=SCHEMA_VERSION, most=SCHEMA_VERSION):
         raise EstimateError("other_schema", found=f"{version!a:.20}", known=SCHEMA_VERSION)
 
 
@@ -198,14 +195,20 @@ def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
     }
 
 
-def _windows(documents: list[dict[str, Any]]) -> Iterator[WindowEstimate]:
-    """Yield the windows of a document."""
-    for entry in documents:
-        window = Window(*(entry[field.name] for field in dataclasses.fields(Window)))
-        weights = np.array(entry["weights"], np.float64)
-        yield WindowEstimate(entry["photo"], window, weights, _number(entry["expected_error"]), entry["kept"])
+def _window(entry: Mapping[str, Any]) -> WindowEstimate:
+    """Return the estimate of a window in a document."""
+    photo, window, kept = typed_value(entry["photo"], int), typed_value(entry, Window), typed_value(entry["kept"], bool)
+    return WindowEstimate(photo, window, _row(entry["weights"], COMPONENTS), _number(entry["expected_error"]), kept)
 
 
-def _number(entry: float | None) -> float:
-    """Return a number of a document; NaN for null."""
-    return math.nan if entry is None else number_of(entry)
+def _row(entry: object, length: int, **bounds: float) -> Float64Array:
+    """Return the numbers of a document in a row; raise ValueError for another length."""
+    row = [number_of(value, **bounds) for value in typed_value(entry, list)]
+    if len(row) != length:
+        raise ValueError(f"{len(row)} numbers instead of {length}")
+    return np.array(row)
+
+
+def _number(entry: object) -> float:
+    """Return a number of a document, 0 or more; NaN for null."""
+    return math.nan if entry is None else typed_value(entry, float)

@@ -5,8 +5,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from crfnet_core.errors import CameraError, CRFNetError, one_line
 from crfnet_core.files import read_json
 from crfnet_core.library.camera import Camera, CameraSettings, checked_name
@@ -105,13 +103,14 @@ def _read_object(path: Path, kinds: tuple[str, ...], code: str) -> dict[str, Any
 def _measured(name: str, entry: Mapping[str, Any]) -> Camera:
     """Return the camera in the entry of a document."""
     make, model, software, source = _texts(entry[field] for field in ("make", "model", "software", "source"))
+    iso = tuple(sorted(number_of(each, int, least=1, most=LARGEST_ISO) for each in entry["iso"]))
     return Camera(
         name=name,
-        curve=ResponseCurve(np.array(entry["brightness"], np.float64)),
-        shape_stops=_deviation(entry["shape_stops"]),
-        scale_stops=_deviation(entry["scale_stops"]),
+        curve=ResponseCurve(entry["brightness"]),
+        shape_stops=number_of(entry["shape_stops"], least=0, most=LARGEST_DEVIATION),
+        scale_stops=number_of(entry["scale_stops"], least=0, most=LARGEST_DEVIATION),
         source=source,
-        settings=CameraSettings(make, model, software, _sensitivities(entry["iso"])),
+        settings=CameraSettings(make, model, software, iso),
         warnings=_texts(entry["warnings"]),
     )
 
@@ -119,18 +118,3 @@ def _measured(name: str, entry: Mapping[str, Any]) -> Camera:
 def _texts(values: Iterable[Any]) -> tuple[str, ...]:
     """Return texts, each on one line and without control characters, since they are printed."""
     return tuple(one_line(str(value)) for value in values)
-
-
-def _sensitivities(values: Iterable[Any]) -> tuple[int, ...]:
-    """Return ISO sensitivities, sorted."""
-    iso = tuple(sorted(map(int, values)))
-    if iso and not 1 <= iso[0] <= iso[-1] < LARGEST_ISO:
-        raise ValueError(f"ISO {iso[0] if iso[0] < 1 else iso[-1]:.3g}")
-    return iso
-
-
-def _deviation(value: Any) -> float:
-    """Return a standard deviation in stops."""
-    if not 0 <= (deviation := number_of(value)) < LARGEST_DEVIATION:
-        raise ValueError(f"a standard deviation of {value}")
-    return deviation

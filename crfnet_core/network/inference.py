@@ -8,13 +8,13 @@ from typing import Self
 
 import numpy as np
 
-from crfnet_core.errors import ModelError
+from crfnet_core.errors import ModelError, check_kinds
 from crfnet_core.network.model import ModelConfig, model_folder, read_graph
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
-from crfnet_core.types import Float32Array, Progress, cores, show_progress
+from crfnet_core.types import Float32Array, Progress, cores, is_number, show_progress
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,8 @@ class ResponseNetwork:
             If a file is absent or does not match the other, the graph cannot be used, or the number of threads is
             negative.
         """
-        if threads < 0:
+        check_kinds(folder=(folder, str | Path | None))
+        if not is_number(threads, int, least=0):
             raise ModelError("negative_threads", threads=threads)
         folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")

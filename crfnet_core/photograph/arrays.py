@@ -1,12 +1,15 @@
 """Pixels from arrays: their type, shape and range are checked, and codes become encoded brightness in [0, 1]."""
 
+from contextlib import suppress
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageOps
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.types import Float32Array
+from crfnet_core.photograph.metadata.jpeg import DAMAGE
+from crfnet_core.types import Float32Array, is_number
 
 #: The channels of an array, in their order; "A" is alpha. OpenCV's order is BGR, nearly all others use RGB.
 ColorOrder = Literal["L", "LA", "RGB", "RGBA", "BGR", "BGRA"]
@@ -26,7 +29,7 @@ def pixels_from_array(
 ) -> tuple[Float32Array, int]:
     """Return new pixels in R, G, B, float32 (H, W, 3) in [0, 1], and the bits per sample; see `Photo.from_array`."""
     order = _stated_order(array, color_order, name)
-    values = _samples(array, name)
+    values = _samples(_upright(array) if isinstance(array, Image.Image) else array, name)
     order = _checked_order(values, order, name)
     bits = _checked_bits(values, bit_depth, name)
     planes = np.atleast_3d(values)[..., [order.index(letter) for letter in ("RGB" if "R" in order else "LLL")]]
@@ -68,12 +71,21 @@ def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> C
     return order
 
 
+def _upright(image: Image.Image) -> Image.Image:
+    """Return a Pillow image turned upright, as its EXIF asks, unless that is damaged."""
+    with suppress(*DAMAGE):
+        image = ImageOps.exif_transpose(image)
+    return image
+
+
 def _samples(array: Any, name: str) -> NDArray[Any]:
     """Return an array of 8- or 16-bit codes or of floating-point numbers; refuse any other."""
     if array is None:
         raise PhotoError("array_is_none", path=name)
     try:
         values = np.asarray(array)
+    except OSError as problem:  # an image of Pillow may be read not before now
+        raise PhotoError("damaged", path=name, kind=array.format, problem=problem) from None
     except (TypeError, ValueError):
         raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
     if values.dtype.kind == "f" or (values.dtype.kind == "u" and values.dtype.itemsize <= 2):
@@ -102,7 +114,7 @@ def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int
     if bit_depth is None and values.dtype.kind == "u" and bits == 16:
         raise PhotoError("array_without_bit_depth", path=name)
     bit_depth = bits if bit_depth is None else bit_depth
-    if not LEAST_BITS <= bit_depth <= bits:
+    if not is_number(bit_depth, int, least=LEAST_BITS, most=bits):
         raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
     return bit_depth
 

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import PhotoError, check_kinds
 from crfnet_core.photograph.arrays import ColorOrder, check_range, has_equal_channels, pixels_from_array
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.types import Float32Array
@@ -78,7 +78,7 @@ class Photo:
         """Return the photograph in an array of NumPy, OpenCV, or whatever NumPy makes an array of, or a Pillow image.
 
         The array holds the codes that the camera wrote: neither linearized nor converted to another color space, and
-        at its full size. It is copied.
+        at its full size. It is copied. A Pillow image is turned upright, as its EXIF asks.
 
         Parameters
         ----------
@@ -99,6 +99,7 @@ class Photo:
             If the array is of another type or shape, its values are out of range, or the order of its channels or the
             bit depth is not known.
         """
+        check_kinds(name=(name, str | Path), metadata=(metadata, FileMetadata | None))
         pixels, bits = pixels_from_array(array, color_order=color_order, bit_depth=bit_depth, name=name)
         return cls(pixels, bits, has_equal_channels(pixels), name, metadata)
 

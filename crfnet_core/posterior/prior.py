@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
-from crfnet_core.errors import PriorError
+from crfnet_core.errors import PriorError, check_kinds
 from crfnet_core.files import read_json
 from crfnet_core.posterior.families import Family
 
@@ -37,9 +37,10 @@ class Prior:
         out have no share, and "lookalikes" and "plain" are 0 unless they are given. Raise PriorError if there is no
         such prior, or the file does not describe one.
         """
-        path = PRIORS / f"{wanted}.json"
-        path = path if path.is_file() else Path(wanted)
+        check_kinds(prior=(wanted, str | Path))
+        path = Path(wanted)
         try:
+            path = packaged if (packaged := PRIORS / f"{wanted}.json").is_file() else path
             entries = read_json(path)
         except OSError as problem:
             names = ", ".join(packaged_priors())

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import CRFNetError, CurveError
-from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray
+from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray, is_number
 
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
 SAMPLES = 1024
@@ -60,7 +60,7 @@ class ResponseCurve(EqualByFields):
     brightness: Float64Array
 
     def __post_init__(self) -> None:
-        brightness = np.array(self.brightness, dtype=np.float64)
+        brightness = numbers_of(self.brightness, CurveError).astype(np.float64)
         if brightness.shape != (SAMPLES,):
             raise CurveError("curve_shape", samples=SAMPLES, shape=brightness.shape)
         if brightness[0] != 0 or brightness[-1] != 1 or not (np.diff(brightness) > 0).all():
@@ -93,7 +93,7 @@ class ResponseCurve(EqualByFields):
         CurveError
             If there are fewer than two finite samples, or the last is not above the first.
         """
-        values = np.asarray(samples, dtype=np.float64)
+        values = numbers_of(samples, CurveError).astype(np.float64)
         if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
             raise CurveError("curve_samples")
         if values[-1] <= values[0]:
@@ -108,7 +108,7 @@ class ResponseCurve(EqualByFields):
     def restored(cls, samples: ArrayLike) -> ResponseCurve:
         """Return the response whose samples a document holds; of rounded ones, the nearest as `from_samples` has it."""
         try:
-            return cls(np.asarray(samples, dtype=np.float64))
+            return cls(numbers_of(samples, CurveError))
         except CurveError:
             return cls.from_samples(samples)
 
@@ -119,9 +119,9 @@ class ResponseCurve(EqualByFields):
         Raises
         ------
         CurveError
-            If `exponent` is not above 0.
+            If `exponent` is not a number above 0.
         """
-        if not exponent > 0:
+        if not is_number(exponent, least=0) or not exponent:
             raise CurveError("curve_exponent", exponent=exponent)
         return cls.from_samples(UNIFORM ** (1 / exponent))
 

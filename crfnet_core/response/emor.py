@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.response.curve import SAMPLES
+from crfnet_core.errors import CurveError
+from crfnet_core.response.curve import SAMPLES, numbers_of
 from crfnet_core.types import Float64Array
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
@@ -59,12 +60,20 @@ class EmorBasis:
         return cls(mean, components * np.sign(components.sum(axis=1, keepdims=True)))
 
     def project(self, curves: ArrayLike) -> Float64Array:
-        """Return the weights, shape (..., 11), of responses of shape (..., 1024)."""
-        return (np.asarray(curves, dtype=np.float64) - self.mean) @ self.components.T
+        """Return the weights, shape (..., 11), of responses of shape (..., 1024); raise CurveError for others."""
+        return (_rows(curves, SAMPLES) - self.mean) @ self.components.T
 
     def reconstruct(self, weights: ArrayLike) -> Float64Array:
         """Return the responses, shape (..., 1024), of weights of shape (..., 11).
 
-        The response of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`.
+        The response of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`. Raises as `project`.
         """
-        return self.mean + np.asarray(weights, dtype=np.float64) @ self.components
+        return self.mean + _rows(weights, COMPONENTS) @ self.components
+
+
+def _rows(values: ArrayLike, length: int) -> Float64Array:
+    """Return finite numbers, shape (..., length), in double precision."""
+    rows = np.asarray(numbers_of(values, CurveError), dtype=np.float64)
+    if rows.shape[-1:] != (length,) or not np.isfinite(rows).all():
+        raise CurveError("curve_rows", length=length, shape=rows.shape)
+    return rows

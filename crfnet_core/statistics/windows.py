@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
-from crfnet_core.errors import PhotoError
-from crfnet_core.types import Float32Array, Pixels, Uint8Array
+from crfnet_core.types import LARGEST, Float32Array, Pixels, Uint8Array
 
 #: Side of a window in samples.
 WINDOW_SIZE = 227
@@ -34,8 +34,8 @@ class Window:
 
     x: int
     y: int
-    step: int
-    filled: int
+    step: Annotated[int, (1, LARGEST)]
+    filled: Annotated[int, (0, 256)]
 
     @property
     def extent(self) -> int:
@@ -88,17 +88,9 @@ def select_windows(
     Even positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least
     `coverage` bins filled; 0 takes the first positions. If `POSITIONS_TRIED` positions do not give enough of them, the
     best-covering others fill the number: look at `Window.covers_range`. The same seed gives the same windows; there are
-    fewer than `count` only if the photograph has fewer positions.
-
-    Raise PhotoError if the photograph is smaller than a window, `count` is below 1, or `seed` is negative.
+    fewer than `count` only if the photograph, whose sides are at least `WINDOW_SIZE`, has fewer positions.
     """
-    if count < 1:
-        raise PhotoError("no_windows_asked", count=count, usual=WINDOWS_PER_PHOTOGRAPH)
-    if seed < 0:
-        raise PhotoError("negative_seed", seed=seed)
     height, width = pixels.shape[:2]
-    if min(height, width) < WINDOW_SIZE:
-        raise PhotoError("smaller_than_window", width=width, height=height, least=WINDOW_SIZE)
     step = sampling_step(height, width)
     chosen: list[Window] = []
     others: list[Window] = []

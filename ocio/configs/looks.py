@@ -92,7 +92,7 @@ def _document(path: Path) -> dict[str, Any] | None:
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         names += [document["sequence"]] if "sequence" in document else []
-        number_of(document["exposure"]["stops"], most=MOST_STOPS)
+        number_of(document["exposure"]["stops"], least=-MOST_STOPS, most=MOST_STOPS)
         _primaries(document)
         _linear_primaries(document)
         is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)

@@ -4,6 +4,7 @@ import html
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from crfnet_core.errors import check_kinds
 from crfnet_core.files import atomic_write_text
 
 from ..errors import LutError
@@ -75,6 +76,7 @@ def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None
     LutError
         If no format has the suffix, the file exists and may not be replaced, or it cannot be written.
     """
+    check_kinds(path=(path, str | Path), lut=(lut, AnyLut))
     path = Path(path)
     if path.suffix.lower() not in WRITERS:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(WRITERS))

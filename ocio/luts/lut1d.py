@@ -7,8 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crfnet_core.errors import check_kinds
 from crfnet_core.response.curve import BLOCK, MOST_BRIGHTNESS, ResponseCurve, is_codes, numbers_of
-from crfnet_core.types import EqualByFields, Float64Array
+from crfnet_core.types import EqualByFields, Float64Array, is_number
 
 from ..defaults import LUT_LENGTH
 from ..errors import LutError
@@ -59,11 +60,9 @@ class Lut1D(EqualByFields):
 
     def __post_init__(self) -> None:
         values = single_precision(self.values)
-        low, high = (float(end) for end in single_precision(self.domain))
+        low, high = _ends(single_precision(self.domain))
         if values.ndim != 1 or not 2 <= values.size <= MAX_LENGTH:
             raise LutError("lut_shape", most=MAX_LENGTH, shape=values.shape)
-        if not (np.isfinite(low) and np.isfinite(high) and low < high):
-            raise LutError("lut_domain", low=low, high=high)
         with np.errstate(invalid="ignore"):
             is_faulty = ~np.isfinite(values) | (np.diff(values, prepend=-np.inf) <= 0)
         if is_faulty.any():
@@ -183,17 +182,18 @@ def inverse_response_lut(
     LutError
         If the length is out of range, or the domain is not finite or does not include [0, 1].
     """
-    if not 2 <= length <= MAX_LENGTH:
+    check_kinds(curve=(curve, ResponseCurve))
+    if not is_number(length, int, least=2, most=MAX_LENGTH):
         raise LutError("lut_length", most=MAX_LENGTH, length=length, usual=LUT_LENGTH)
-    low, high = domain
-    if not (-np.inf < low <= 0 and 1 <= high < np.inf):
+    low, high = _ends(domain)
+    if not (low <= 0 and high >= 1):
         raise LutError("lut_domain_short", low=low, high=high)
     code = 1 / 255
     toe = min(float(curve.inverse(code)) / code, MAX_END_SLOPE)
     shoulder = min((1 - float(curve.inverse(1 - code))) / code, MAX_END_SLOPE)
     brightness = np.linspace(low, high, length)
     irradiance = curve.inverse(brightness) + toe * np.minimum(brightness, 0) + shoulder * np.maximum(brightness - 1, 0)
-    return Lut1D(strictly_increasing(irradiance), (low, high), tuple(comments))
+    return Lut1D(strictly_increasing(irradiance), (low, high), clean_comments(comments))
 
 
 def strictly_increasing(values: ArrayLike) -> Float64Array:
@@ -214,6 +214,8 @@ def strictly_increasing(values: ArrayLike) -> Float64Array:
 
 def clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
     """Return the comments, each fit for one line of any format; empty ones are dropped."""
+    if not isinstance(comments, list | tuple) or not all(isinstance(comment, str) for comment in comments):
+        raise LutError("lut_comments")
     printable = ("".join(c if c.isprintable() else " " for c in comment) for comment in comments)
     cleaned = (" ".join(comment.split())[:MAX_COMMENT].strip() for comment in printable)
     return tuple(comment for comment in cleaned if comment)
@@ -222,8 +224,16 @@ def clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
 def single_precision(values: ArrayLike) -> Float64Array:
     """Return `values` rounded to float32, as float64; subnormal numbers become 0."""
     with np.errstate(over="ignore"):
-        single = np.asarray(values, dtype=np.float64).astype(np.float32)
+        single = numbers_of(values, LutError).astype(np.float64).astype(np.float32)
     return np.where(np.abs(single) < np.finfo(np.float32).tiny, 0, single).astype(np.float64)
+
+
+def _ends(domain: ArrayLike) -> tuple[float, float]:
+    """Return the first and the last input of a domain; refuse one that is not a finite interval."""
+    ends = numbers_of(domain, LutError)
+    if ends.shape != (2,) or not -np.inf < ends[0] < ends[1] < np.inf:
+        raise LutError("lut_domain", domain=domain)
+    return float(ends[0]), float(ends[1])
 
 
 def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import one_line
+from crfnet_core.errors import check_kinds, one_line
 from crfnet_core.files import read_bytes
 from crfnet_core.types import Float64Array
 
@@ -47,6 +47,7 @@ def read_lut(path: str | Path) -> AnyLut:
         If the file is absent or too large, OpenColorIO refuses it, it mixes the channels, or its table falls anywhere
         or is level over more than `MOST_LEVEL` of its steps.
     """
+    check_kinds(path=(path, str | Path))
     path = Path(path)
     comments = _checked_text(path)
     processor = _processor(path)

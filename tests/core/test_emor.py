@@ -1,24 +1,18 @@
 import numpy as np
 import pytest
 
+from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import SAMPLES, UNIFORM
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 
 
-def test_the_packaged_basis_is_orthonormal():
-    basis = EmorBasis.load()
-    assert basis.mean.shape == (SAMPLES,)
-    assert basis.components.shape == (COMPONENTS, SAMPLES)
-    np.testing.assert_allclose(basis.components @ basis.components.T, np.eye(COMPONENTS), atol=1e-12)
-    assert (basis.components.sum(axis=1) > 0).all()
-
-
-def test_the_mean_response_runs_from_0_to_1():
-    mean = EmorBasis.load().mean
-    assert mean[0] == pytest.approx(0, abs=1e-9)
-    assert mean[-1] == pytest.approx(1, abs=1e-9)
+def test_the_packaged_basis_is_orthonormal_about_a_mean_from_0_to_1():
+    mean, components = EmorBasis.load().mean, EmorBasis.load().components
+    assert (mean.shape, components.shape) == ((SAMPLES,), (COMPONENTS, SAMPLES))
+    np.testing.assert_allclose(components @ components.T, np.eye(COMPONENTS), atol=1e-12)
+    assert (components.sum(axis=1) > 0).all()
+    np.testing.assert_allclose(mean[[0, 512, -1]], [0, 0.75436, 1], atol=5e-5)
     assert (np.diff(mean) > 0).all()
-    assert mean[512] == pytest.approx(0.75436, abs=5e-5)
 
 
 def test_project_undoes_reconstruct():
@@ -26,6 +20,14 @@ def test_project_undoes_reconstruct():
     basis = EmorBasis.load()
     assert basis.reconstruct(weights).shape == (4, 3, SAMPLES)
     np.testing.assert_allclose(basis.project(basis.reconstruct(weights)), weights, atol=1e-12)
+
+
+@pytest.mark.parametrize("values", ["x", None, [[0], [1, 0]], 0.5, [], np.zeros((2, 5))])
+@pytest.mark.parametrize(("function", "length"), [(EmorBasis.project, SAMPLES), (EmorBasis.reconstruct, COMPONENTS)])
+def test_other_values_are_refused(values, function, length):
+    for each in (values, np.full(length, np.nan)):
+        with pytest.raises(CurveError):
+            function(EmorBasis.load(), each)
 
 
 def test_a_basis_of_curves_explains_them_in_order():

@@ -30,7 +30,7 @@ CAMERA = FileMetadata(width=6000, height=4000, make="NIKON CORPORATION", model="
 EDITED = replace(CAMERA, software="Adobe Photoshop 23.1 (Macintosh)")
 
 
-class FakeNetwork:
+class FakeNetwork(ResponseNetwork):
     """States given evidence, whatever the windows."""
 
     def __init__(self, windows, pooled=None):
@@ -223,16 +223,11 @@ def test_photographs_of_different_cameras_are_warned_of():
     assert warnings_of([photo(metadata=CAMERA), photo(seed=1, metadata=CAMERA), photo(seed=2)]) == []
 
 
-def test_a_small_photograph_is_named():
-    with pytest.raises(PhotoError) as caught:
-        estimate_response(photo(shape=(100, 400)), network=FakeNetwork([]))
-    assert (caught.value.code, caught.value.facts["path"].name) == ("in_file", "plate01.jpg")
-    assert caught.value.facts["problem"].code == "smaller_than_window"
-
-
-def test_no_photograph_is_refused():
-    with refused(PhotoError, "no_photographs"):
-        estimate_response([], network=FakeNetwork([]))
+@pytest.mark.parametrize("shape", [(226, 500), (500, 226), (1, 1)])
+def test_a_small_photograph_is_named(shape):
+    small = Photo(np.zeros((*shape, 3), np.float32), 8, True, "plate01.jpg")
+    with refused(PhotoError, "smaller_than_window", path=Path("plate01.jpg")):
+        estimate_response(small, network=FakeNetwork([]))
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ from crfnet_core.photograph.metadata.color_tags import profile_transfer
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.metadata.origin import picture_shape
 from crfnet_core.posterior import Family
+from crfnet_core.types import plain_values, typed_value
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
@@ -148,7 +149,7 @@ def test_a_stated_device_takes_the_place_of_the_files():
     assert (stated.device, stated.has_stated_device) == (Device.PHONE, True)
     assert (stated.camera, stated.editor) == (before.camera, before.editor)
     assert stated.words == ("taken with a phone", *before.words[1:])
-    assert FileOrigin.from_dict(asdict(stated)) == stated
+    assert typed_value(plain_values(asdict(stated)), FileOrigin) == stated
     assert with_stated_device(before, Device.UNKNOWN).words == ("taken with a camera", *before.words[1:])
 
 

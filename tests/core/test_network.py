@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from crfnet_core.errors import ModelError
+from crfnet_core.errors import CRFNetError, ModelError
 from crfnet_core.network import DEFAULT_MODEL, MODELS, ResponseNetwork, inference, model_folder
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.statistics import window_statistics
@@ -149,21 +149,18 @@ def test_an_absent_file_or_a_pipe_is_named(copied, name):
         assert refusal(copied) == "unreadable_model"
 
 
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [("{", "bad_model_json"), ("[1]", "bad_model_json"), ("\xff\xfe", "bad_model_json"), ("{}", "bad_model_config")],
-)
-def test_a_spoiled_config_is_refused(copied, text, code):
-    (copied / "model.json").write_bytes(text.encode("latin-1"))
-    assert refusal(copied) == code
+@pytest.mark.parametrize("content", [b"{", b"[1]", b"\xff\xfe", b"{}"])
+def test_a_spoiled_config_is_refused(copied, content):
+    (copied / "model.json").write_bytes(content)
+    assert refusal(copied) == ("bad_model_config" if content == b"{}" else "bad_model_json")
 
 
 #: Code -> entries of model.json that are refused with it.
 OTHER_KINDS = {
-    "bad_model_config": ({"opset": "18"},),
+    "bad_model_config": ({"opset": "18"}, {"opset": True}, {"output_names": ["locations", "locations", {}]}),
     "other_kind_of_model": (
         *({"components": 7}, {"basis": "pca"}, {"input_name": "pixels"}),
-        *({"output_names": ["weights", "log_errors"]}, {"output_names": ["locations", "locations", {}]}),
+        *({"output_names": ["weights", "log_errors"]}, {"output_names": ["locations"] * 3}),
     ),
     "bad_output": ({"components": 11}, {"output_names": ["locations", "log_odds", "factors"]}),
     "failing_graph": ({"output_names": ["locations", "factors", "absent"]}, {"input_name": "windows"}),
@@ -245,6 +242,10 @@ def test_as_many_windows_run_at_the_same_time_as_cores_may_be_used(windows, monk
     assert found == [3, 2]
 
 
-def test_threads_are_not_negative():
-    with refused(ModelError, "negative_threads"):
-        ResponseNetwork.load(threads=-1)
+def test_folders_are_paths_and_threads_are_whole_numbers_and_not_negative():
+    assert refusal("x" * 300) == "unreadable_model"
+    with refused(CRFNetError, "argument_kind", name="folder"):
+        ResponseNetwork.load(5)
+    for threads in (-1, 1.5, "2", True):
+        with refused(ModelError, "negative_threads"):
+            ResponseNetwork.load(threads=threads)

@@ -1,10 +1,11 @@
+import io
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.photo import Photo
@@ -76,16 +77,16 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
 
 
 @pytest.mark.parametrize(
-    ("mode", "array"),
+    ("array", "channels"),
     [
-        *(("RGB", CODES), ("RGBA", with_alpha(CODES)), ("L", CODES[..., 0])),
-        ("LA", np.concatenate([CODES[..., :1], ALPHA], 2)),
+        (CODES, [0, 1, 2]),
+        (with_alpha(CODES), [0, 1, 2]),
+        (CODES[..., 0], [0] * 3),
+        (with_alpha(CODES[..., :1]), [0] * 3),
     ],
 )
-def test_an_image_of_pillow_knows_its_order(mode, array):
-    image = Image.fromarray(array, mode)
-    gray = mode.startswith("L")
-    np.testing.assert_array_equal(Photo.from_array(image).pixels, EXACT[..., [0, 0, 0] if gray else [0, 1, 2]])
+def test_an_image_of_pillow_knows_its_order(array, channels):
+    np.testing.assert_array_equal(Photo.from_array(Image.fromarray(array)).pixels, EXACT[..., channels])
 
 
 @pytest.mark.parametrize("byte_order", ["<", ">"])
@@ -97,54 +98,68 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
     assert code_of(image) == "array_without_bit_depth"
 
 
-def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
-    path = write_image(tmp_path / "a.png", codes)
-    expected = read_photo(path).pixels
-    image = Image.open(path)
-    np.testing.assert_array_equal(Photo.from_array(image).pixels, expected)
+def test_opencv_reads_what_read_photo_reads(tmp_path, codes):
     cv2 = pytest.importorskip("cv2")
-    np.testing.assert_array_equal(Photo.from_array(cv2.imread(str(path)), color_order="BGR").pixels, expected)
+    path = write_image(tmp_path / "a.png", codes)
+    found = Photo.from_array(cv2.imread(str(path)), color_order="BGR")
+    np.testing.assert_array_equal(found.pixels, read_photo(path).pixels)
 
 
-@pytest.mark.parametrize(
-    ("array", "options", "code"),
-    [
-        (None, {}, "array_is_none"),
-        (Path("plate.jpg"), {}, "array_sample_type"),
-        ([[1, 2], [3]], {}, "array_sample_type"),
-        (CODES.astype(np.int64), {"color_order": "RGB"}, "array_sample_type"),
-        (CODES, {}, "array_without_order"),
-        (CODES, {"color_order": "GBR"}, "array_unknown_order"),
-        (CODES, {"color_order": "RGBA"}, "array_other_order"),
-        (CODES[..., 0], {"color_order": "RGB"}, "array_other_order"),
-        (np.zeros((3, 20, 30), np.uint8), {"color_order": "RGB"}, "array_channels_first"),
-        (np.zeros((2, 20, 30, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
-        (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
-        (np.zeros(5, np.uint8), {}, "array_shape"),
-        (CODES.astype(np.uint16), {"color_order": "RGB"}, "array_without_bit_depth"),
-        (CODES.astype(np.uint16) * 5, {"color_order": "RGB", "bit_depth": 10}, "array_above_bit_depth"),
-        (CODES, {"color_order": "RGB", "bit_depth": 10}, "array_bit_depth"),
-        (CODES, {"color_order": "RGB", "bit_depth": 4}, "array_bit_depth"),
-        (CODES.astype(np.float32), {"color_order": "RGB"}, "array_out_of_range"),
-        (EXACT - np.float32(0.1), {"color_order": "RGB"}, "array_out_of_range"),
-        (np.full((2, 2), np.nan), {}, "array_holds_nan"),
-        (np.full((2, 2), np.inf), {}, "array_out_of_range"),
-        *((Image.new(mode, (4, 4)), {}, "pillow_mode") for mode in ("P", "CMYK", "1", "F")),
-        (Image.fromarray(CODES), {"color_order": "BGR"}, "pillow_order_stated"),
-    ],
-)
-def test_other_arrays_are_refused(array, options, code):
-    assert code_of(array, **options) == code
+@pytest.mark.parametrize("suffix", ["png", "tif"])
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_an_image_of_pillow_is_turned_upright_as_its_file_is(tmp_path, codes, suffix, orientation):
+    path, exif = tmp_path / f"a.{suffix}", Image.Exif()
+    exif[0x0112] = orientation
+    Image.fromarray(codes).save(path, exif=exif)
+    with Image.open(path) as image:
+        np.testing.assert_array_equal(Photo.from_array(image).pixels, read_photo(path).pixels)
 
 
-@pytest.mark.parametrize(
-    ("pixels", "code"),
-    [
-        *((each, "photo_pixels") for each in (CODES, EXACT.astype(float), EXACT[..., 0], EXACT[:0], EXACT.tolist())),
-        *((255 * EXACT, "array_out_of_range"), (EXACT - 1, "array_out_of_range")),
-        (np.where(EXACT == 1, np.nan, EXACT).astype(np.float32), "array_holds_nan"),
-    ],
-)
-def test_the_constructor_checks_its_pixels(pixels, code):
-    with refused(PhotoError, code):
-        Photo(pixels, 8, False, Path("a.png"))
+def test_an_image_of_pillow_with_damaged_exif_is_as_stored_and_one_that_is_cut_short_is_refused(tmp_path, codes):
+    Image.fromarray(codes).save(tmp_path / "a.png", exif=b"Exif\0\0damaged")
+    with Image.open(tmp_path / "a.png") as image:
+        np.testing.assert_array_equal(Photo.from_array(image).pixels, (codes / 255).astype(np.float32))
+    content = write_image(tmp_path / "a.tif", codes, Compression="none").read_bytes()
+    with Image.open(io.BytesIO(content[: len(content) // 2])) as image:
+        assert code_of(image) == "damaged"
+
+
+#: Code -> arrays that are refused with it, and the order of their channels.
+REFUSED_ARRAYS = {
+    "array_is_none": [(None, None)],
+    "array_sample_type": [(Path("plate.jpg"), None), ([[1, 2], [3]], None), (CODES.astype(np.int64), "RGB")],
+    "array_without_order": [(CODES, None)],
+    "array_unknown_order": [(CODES, "GBR"), (CODES, 5)],
+    "array_other_order": [(CODES, "RGBA"), (CODES[..., 0], "RGB")],
+    "array_channels_first": [(np.zeros((3, 20, 30), np.uint8), "RGB")],
+    "array_shape": [(np.zeros(shape, np.uint8), "RGB") for shape in ((2, 20, 30, 3), (0, 0, 3), (5,))],
+    "array_without_bit_depth": [(CODES.astype(np.uint16), "RGB")],
+    "array_out_of_range": [(CODES / 1.0, "RGB"), (EXACT - np.float32(0.1), "RGB"), (np.full((2, 2), np.inf), None)],
+    "array_holds_nan": [(np.full((2, 2), np.nan), None)],
+    "pillow_mode": [(Image.new(mode, (4, 4)), None) for mode in ("P", "CMYK", "1", "F")],
+    "pillow_order_stated": [(Image.fromarray(CODES), "BGR")],
+}
+
+
+@pytest.mark.parametrize(("code", "arrays"), REFUSED_ARRAYS.items())
+def test_other_arrays_are_refused(code, arrays):
+    assert {code_of(array, color_order=order) for array, order in arrays} == {code}
+
+
+def test_a_bit_depth_that_the_array_does_not_have_and_arguments_of_another_kind_are_refused():
+    for choice in ({"name": 5}, {"metadata": "Canon"}):
+        with refused(CRFNetError, "argument_kind", name=next(iter(choice))):
+            Photo.from_array(CODES, color_order="RGB", **choice)
+    assert code_of(CODES.astype(np.uint16) * 5, color_order="RGB", bit_depth=10) == "array_above_bit_depth"
+    assert {code_of(CODES, color_order="RGB", bit_depth=bits) for bits in (10, 4, 7.5, "8", True)} == {
+        "array_bit_depth"
+    }
+
+
+def test_the_constructor_checks_its_pixels():
+    others = {"photo_pixels": [CODES, EXACT.astype(float), EXACT[..., 0], EXACT[:0], EXACT.tolist()]}
+    others |= {"array_out_of_range": [255 * EXACT, EXACT - 1], "array_holds_nan": [np.full_like(EXACT, np.nan)]}
+    for code, refused_pixels in others.items():
+        for pixels in refused_pixels:
+            with refused(PhotoError, code):
+                Photo(pixels, 8, False, Path("a.png"))

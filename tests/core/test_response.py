@@ -13,15 +13,11 @@ from tests.helpers.refusals import refused
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 
 
-def test_gamma_has_the_values_of_a_power_law():
+def test_gamma_has_the_values_of_a_power_law_and_other_numbers_of_samples_are_resampled():
     curve = ResponseCurve.gamma(2.0)
     np.testing.assert_allclose(curve.forward([0, 0.25, 0.64, 1]), [0, 0.5, 0.8, 1], atol=2e-4)
     np.testing.assert_allclose(curve.inverse([0, 0.5, 0.8, 1]), [0, 0.25, 0.64, 1], atol=3e-4)
-
-
-def test_other_numbers_of_samples_are_resampled():
-    curve = ResponseCurve.from_samples([0.0, 0.5, 1.0])
-    np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
+    np.testing.assert_allclose(ResponseCurve.from_samples([0.0, 0.5, 1.0]).brightness, UNIFORM, atol=1e-12)
 
 
 def test_the_transfer_functions_of_standards_are_those_of_colour_science(tolerance):
@@ -78,7 +74,11 @@ def test_nearest_increasing_is_the_projection(samples):
         *((ResponseCurve.from_samples, row, "curve_dark") for row in ([1.0, 0.0], [0.5, 0.5])),
         (ResponseCurve, np.zeros(SAMPLES), "curve_not_strict"),
         (ResponseCurve, np.linspace(0, 1, 10), "curve_shape"),
-        (ResponseCurve.gamma, 0, "curve_exponent"),
+        *(
+            (ResponseCurve.gamma, number, "curve_exponent")
+            for number in (0, -1, np.nan, np.inf, True, "2", None, [2.2])
+        ),
+        *((make, "x", "not_numbers") for make in (ResponseCurve, ResponseCurve.from_samples)),
     ],
 )
 def test_what_makes_no_curve_is_refused(make, argument, code):

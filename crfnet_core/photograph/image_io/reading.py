@@ -55,8 +55,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     Parameters
     ----------
     source : str, path-like, bytes or binary file
-        The file, its content, or an open file that is read to its end. Its beginning decides on the format, not its
-        name (except for camera raw).
+        The file, its content, or an open file that is read from where it stands. Its beginning decides on the format,
+        not its name (except for camera raw).
 
     Raises
     ------

@@ -25,7 +25,7 @@ ANNEX_K_CHROMA: Table = (
 _GAIN_MAPS = (b"http://ns.adobe.com/hdr-gain-map/", b"urn:iso:std:iso:ts:21496:-1")
 
 #: Exceptions of Pillow for damaged files.
-_DAMAGE = (IndexError, KeyError, OSError, SyntaxError, TypeError, ValueError, ZeroDivisionError, struct.error)
+DAMAGE = (IndexError, KeyError, OSError, SyntaxError, TypeError, ValueError, ZeroDivisionError, struct.error)
 
 
 def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
@@ -36,7 +36,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
             warnings.simplefilter("ignore")  # of damaged EXIF
             image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
             interop_index = _interop_index(image)
-    except _DAMAGE:
+    except DAMAGE:
         return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
     segments = [(name, bytes(payload)) for name, payload in image.applist]
@@ -72,6 +72,6 @@ def _interop_index(image: JpegImageFile) -> str:
     """Return EXIF's InteroperabilityIndex; empty if there is none, or EXIF is damaged."""
     try:
         index = image.getexif().get_ifd(ExifTags.IFD.Interop).get(ExifTags.Interop.InteropIndex, "")
-    except _DAMAGE:
+    except DAMAGE:
         return ""
     return index if isinstance(index, str) else ""

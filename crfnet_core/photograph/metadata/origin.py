@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
-from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
 from crfnet_core.photograph.metadata.editors import editor_name, is_developer
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
@@ -89,13 +87,6 @@ class FileOrigin:
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
         return is_compressed and self.is_scaled is True and not self.names_device
 
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
-        """Return the origin that `dataclasses.asdict` made an entry of, also after JSON; other entries are left out."""
-        known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
-        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
-        return cls(**{**known, **kinds, "words": tuple(map(str, entry["words"]))})
-
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
@@ -123,15 +114,9 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one.
-
-    Raise PhotoError if it is not a device.
-    """
+    """Return `origin` with the device that the user states, UNKNOWN for another camera; a rendering stays one."""
     if origin.renderer:
         return origin
-    if device not in list(Device):
-        raise PhotoError("not_a_device", device=repr(device), names=", ".join(kind.name for kind in Device))
-    device = Device(device)
     words = (f"taken with {_DEVICES.get(device, 'a camera')}", *origin.words[1:])
     return replace(origin, device=device, has_stated_device=True, words=words)
 

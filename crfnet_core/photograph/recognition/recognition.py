@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
@@ -45,14 +44,6 @@ class Recognition:
     errors: tuple[float, ...] = ()  # expected, of the light of each, in stops
     color_space: str = ""  # in ACES configs, of the curve with the least expected error; empty if it has none
 
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
-        """Return the recognition that `dataclasses.asdict` made an entry of, also after JSON; None for None."""
-        if entry is None:
-            return None
-        several = {name: tuple(entry.get(name, ())) for name in ("curves", "probabilities", "errors")}
-        return cls(**{**entry, **several, "kind": Kind(entry["kind"])})
-
 
 def recognize(
     levels: Levels,
@@ -67,8 +58,8 @@ def recognize(
     `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
     if levels.is_flat or is_noise:
-        reason = Notice("flat_frame" if levels.is_flat else "noise_frame")
-        return _recognized(Kind.FLAT, reason, Notice("flat_frame_advice"))
+        code, advice = ("flat_frame", "flat_frame_advice") if levels.is_flat else ("noise_frame", "noise_frame_advice")
+        return _recognized(Kind.FLAT, Notice(code), Notice(advice))
     if is_limited_range(levels):
         return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
     if log_probability > RECOGNIZED:

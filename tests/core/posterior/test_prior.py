@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from crfnet_core.errors import PriorError
+from crfnet_core.errors import CRFNetError, PriorError
 from crfnet_core.posterior import Family, Prior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, packaged_priors
 from tests.helpers.refusals import refused
@@ -34,9 +34,7 @@ def test_a_file_of_ones_own_is_scaled_to_a_sum_of_1(tmp_path):
 def test_factors_shift_the_shares():
     prior = Prior("p", {Family.PHONE: 0.6, Family.CAMERA: 0.3, Family.FILM: 0.1}, 0.5)
     shifted = prior.reweighted({Family.PHONE: 0.1, Family.FILM: 1.0})
-    assert shifted.shares == pytest.approx(
-        {Family.PHONE: 0.06 / 0.46, Family.CAMERA: 0.3 / 0.46, Family.FILM: 0.1 / 0.46}
-    )
+    assert [0.46 * shifted.shares[family] for family in prior.shares] == pytest.approx([0.06, 0.3, 0.1])
     assert (shifted.name, shifted.evidence) == ("p", 0.5)
     assert prior.reweighted({}).shares == pytest.approx(prior.shares)
 
@@ -63,5 +61,8 @@ def test_a_file_that_describes_no_prior_is_refused_in_one_line(tmp_path, code, e
 
 
 def test_an_unknown_name_lists_the_known_ones():
-    with refused(PriorError, "no_prior", names="any, camera"):
-        Prior.load("nonesuch")
+    for name in ("nonesuch", "x" * 300):
+        with refused(PriorError, "no_prior", names="any, camera"):
+            Prior.load(name)
+    with refused(CRFNetError, "argument_kind", name="prior"):
+        Prior.load(5)

@@ -23,6 +23,7 @@ from crfnet_core.photograph.recognition.log_footage import (
     log_factor,
     nearest_curves,
 )
+from crfnet_core.types import typed_value
 from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
 from tests.helpers.refusals import refused
 
@@ -84,7 +85,7 @@ def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_color_
     assert list(recognition.probabilities) == sorted(recognition.probabilities, reverse=True)
     assert 0 < sum(recognition.probabilities) < 1
     assert recognition.color_space == COLOR_SPACES.get(safest, "")
-    assert Recognition.from_dict(json.loads(json.dumps(dataclasses.asdict(recognition)))) == recognition
+    assert typed_value(json.loads(json.dumps(dataclasses.asdict(recognition))), Recognition) == recognition
 
 
 def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
@@ -192,10 +193,11 @@ def tagged(color):
 
 
 @pytest.mark.parametrize("codes", [(0, 0, 0), (255, 255, 255), (200, 30, 60), (128, 129, 127)])
-def test_a_flat_frame_is_recognized(codes):
+def test_a_flat_frame_is_recognized_and_advised_other_than_noise(codes):
     noise = np.random.default_rng(0).integers(0, 2, (64, 64, 1))
     levels = Levels.from_pixels(quantized((np.array(codes) + noise) / 256))
-    assert recognize(levels, log_probability=0.9).kind is Kind.FLAT
+    flat, noise = (recognize(each, log_probability=0.9, is_noise=True) for each in (levels, PLAIN_LEVELS))
+    assert (flat.kind, noise.kind, flat.advice == noise.advice) == (Kind.FLAT, Kind.FLAT, False)
 
 
 def test_twelve_bits_in_a_file_of_sixteen_are_recognized():

@@ -42,7 +42,7 @@ BAD = [
     ("photograph_is_empty", "estimate empty.jpg"),
     ("folder_for_photograph", "estimate folder.jpg"),
     ("damaged", "estimate cut.jpg"),
-    ("in_file", "estimate small.png"),
+    ("smaller_than_window", "estimate small.png"),
     ("scene_linear_file", "estimate linear.exr"),
     ("no_such_photograph", "estimate loop.jpg"),
     ("unreadable_model", "estimate plate.jpg --model none"),

@@ -73,17 +73,12 @@ def test_pixels_keep_their_shape_and_are_not_written():
 @pytest.mark.parametrize(
     ("values", "domain", "code"),
     [
-        ([0, 0.5, 0.4, 1], (0, 1), "lut_entry"),
-        ([0, np.nan, 1], (0, 1), "lut_entry"),
-        ([0, 1e39], (0, 1), "lut_entry"),
-        ([0, 1, 1 + 1e-9], (0, 1), "lut_entry"),
-        ([0], (0, 1), "lut_shape"),
-        ([[0, 0, 0], [1, 1, 1]], (0, 1), "lut_shape"),
-        (np.arange(65537), (0, 1), "lut_shape"),
-        ([0, 1], (1, 0), "lut_domain"),
-        ([0, 1], (0, np.nan), "lut_domain"),
-        ([-1e36, 1e36], (0, 1), "lut_span"),
-        ([0, 1], (-1e36, 1e36), "lut_span"),
+        *((row, (0, 1), "lut_entry") for row in ([0, 0.5, 0.4, 1], [0, np.nan, 1], [0, 1e39], [0, 1, 1 + 1e-9])),
+        *((values, (0, 1), "lut_shape") for values in ([0], [[0, 0, 0], [1, 1, 1]], np.arange(65537))),
+        *((values, (0, 1), "not_numbers") for values in (None, "01", ["0", "1"], [[0], [1, 0]])),
+        *(([0, 1], domain, "lut_domain") for domain in ((1, 0), (0, np.nan), (0,), 1, (0, 1, 2), ((0, 1),))),
+        *(([0, 1], domain, "not_numbers") for domain in (None, ("0", "1"))),
+        *(([-1e36, 1e36], (0, 1), "lut_span"), ([0, 1], (-1e36, 1e36), "lut_span")),
     ],
 )
 def test_other_tables_are_refused(values, domain, code):
@@ -171,14 +166,13 @@ def test_the_slope_beyond_a_clipped_end_is_bounded():
 @pytest.mark.parametrize(
     ("code", "choice"),
     [
-        *(
-            ("lut_domain_short", {"domain": ends})
-            for ends in ((0.1, 1), (0, 0.9), (-np.inf, 1), (0, np.inf), (np.nan, 1))
-        ),
-        *(("lut_length", {"length": length}) for length in (-1, 0, 1, 65537)),
+        *(("lut_domain_short", {"domain": ends}) for ends in ((0.1, 1), (0, 0.9))),
+        *(("lut_domain", {"domain": ends}) for ends in ((-np.inf, 1), (0, np.inf), (np.nan, 1), (0,))),
+        *(("lut_length", {"length": length}) for length in (-1, 0, 1, 65537, 4081.5, "4081", None, True)),
+        *(("lut_comments", {"comments": comments}) for comments in ("text", [1], None)),
     ],
 )
-def test_domains_that_do_not_hold_the_response_and_lengths_out_of_range_are_refused(code, choice):
+def test_choices_that_make_no_lut_of_a_response_are_refused(code, choice):
     with refused(LutError, code):
         inverse_response_lut(ResponseCurve.gamma(), **choice)
 

@@ -11,6 +11,7 @@ from hypothesis.extra.numpy import arrays
 from crfnet.errors import LutError
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import through_lut
 from tests.helpers.refusals import refused
@@ -83,11 +84,14 @@ def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, v
 
 
 @pytest.mark.parametrize("suffix", [*SUFFIXES, *map(str.upper, SUFFIXES)])
-def test_a_file_is_replaced_only_when_asked(tmp_path, suffix):
+def test_a_file_is_replaced_only_when_asked_and_by_a_lut(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
     path.write_text("mine")
     with refused(LutError, "exists"):
         write_lut(path, Lut1D([0, 1]))
+    for call in (lambda: write_lut(path, 5, overwrite=True), lambda: read_lut(5), lambda: inverse_response_lut(5)):
+        with refused(CRFNetError, "argument_kind"):
+            call()
     assert path.read_text() == "mine"
     write_lut(path, Lut1D([0, 1]), overwrite=True)
     assert read_lut(str(path)) == Lut1D([0, 1])
