@@ -98,8 +98,6 @@ SENTENCES: Mapping[str, str] = {
     "name_not_utf8": "{path}: the name is not UTF-8; rename the file or its folder",
     "no_such_photograph": "{path}: does not exist; check the name",
     "not_a_file": "{path}: is a pipe or a device; give a file",
-    "not_an_image_file": "{path}: is not a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP file,"
-    " whatever its name says; save the photograph as one of these",
     "not_an_image_file": "{path}: does not begin as a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP"
     " file; save the photograph as one of these, and give an open file at its beginning",
     "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph that it came"
