@@ -46,10 +46,9 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 
 
 def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
-    """Return by how many stops the estimated linear light is too bright relative to white: Eq. 38.
+    """Return by how many stops the estimated linear light is too bright relative to white, at 1 in both: Eq. 38.
 
-    The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out. Both
-    responses have white at 1.
+    The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out.
     """
     return float(np.mean(_stops_off(true, estimated)))
 

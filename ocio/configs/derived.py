@@ -51,9 +51,8 @@ def write_derived_config(
     """Write `CONFIG_NAME` and LUTs to `folder`, which is not the base's: a base with plates' color spaces and rules.
 
     A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". `others` are further
-    LUT files, by their names. Raise a ConfigError, LutError or PlateError, and leave the folder as it was, if a file
-    exists and may not be replaced or cannot be written, or OpenColorIO refuses the config or converts otherwise than
-    the LUTs.
+    LUT files, by their names. Raise a CRFNetError, and leave the folder as it was, if a file exists and may not be
+    replaced or cannot be written, or OpenColorIO refuses the config or converts otherwise than the LUTs.
     """
     homes = [path.parent for path in (base.path, base.path and base.path.resolve()) if path]
     if folder.is_dir() and any(map(folder.samefile, homes)):

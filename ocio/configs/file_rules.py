@@ -66,9 +66,8 @@ def rule_regex(patterns: Iterable[str]) -> str:
 def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
     """Put the file rule `name` of a plate before all others of a config, in place, and return whether it is there.
 
-    Where a rule of another plate leads one of the files to another space than `space`, the name alone does not identify
-    the plate, and neither gets the file: the other rule then leads to the space that the file has without both, and
-    stays, so that a third plate of the name finds it.
+    Where a rule of another plate leads one of the files to another space, neither gets the file: that rule then leads
+    to the space that the file has without both, and stays, so that a third plate of the name finds it.
     """
     is_shared = [_release(config, pattern, space) for pattern in patterns]
     if any(is_shared):

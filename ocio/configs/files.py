@@ -21,12 +21,10 @@ from .reference_space import rec709_to_reference, steps_to_reference
 #: much memory, and the square of the number of color spaces in time.
 MAX_CONFIG_SIZE = 2 * 2**20
 
-#: The most YAML aliases (`*name`) of a config. OpenColorIO writes none; aliases of aliases multiply: 1 KB of them takes
-#: gigabytes.
+#: The most YAML aliases (`*name`) of a config. OpenColorIO writes none; aliases of aliases multiply to gigabytes.
 MOST_ALIASES = 8
 
-#: The most variables that a config declares, and characters that one of them may expand to: variables of variables
-#: multiply, too.
+#: The most variables of a config, and characters that one may expand to: variables of variables multiply, too.
 MOST_VARIABLES, LONGEST_VALUE = 100, 4096
 
 #: An alias where YAML allows a value.
@@ -100,9 +98,9 @@ def _is_bounded(text: str, values: Mapping[str, str]) -> bool:
 def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, Lut1D], overwrite: bool = False) -> None:
     """Write a config; the file gets its name only after OpenColorIO has loaded it and converts as its LUTs do.
 
-    `check` holds the LUT of each plate's color space, by the name of the space. OpenColorIO's processor must equal the
-    LUT, times the exposure that the config gives the plate, in both directions to `TOLERANCE`. Raise a ConfigError, and
-    leave no file, if the config does not load, is not valid, converts otherwise, or cannot be written.
+    `check` holds the LUT of each plate's color space, by its name: the processor must equal the LUT, times the
+    exposure, in both directions to `TOLERANCE`. Raise a ConfigError, and leave no file, if it does not, the config is
+    not valid, or it cannot be written.
     """
     OCIO.ClearAllCaches()
     try:

@@ -84,10 +84,9 @@ class PlateColorSpace:
 def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace]) -> tuple[str, ...]:
     """Add plates' color spaces and file rules to a config, in place; return the patterns that several plates have.
 
-    After the response and the exposure, a plate is converted from its primaries to linear Rec.709, and then as
-    `rec709_to_reference` says. Profile version 1 has neither aliases nor file rules: they are left out there, and so is
-    an exposure of 0. Linear files get a rule where the config takes OpenEXR files for another space than theirs. Raise
-    a ConfigError if the config has one of the names already, or cannot convert linear Rec.709 to its reference.
+    Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Linear
+    files get a rule where the config takes OpenEXR files for another space than theirs. Raise a ConfigError if the
+    config has one of the names already, or cannot convert linear Rec.709 to its reference.
     """
     usual = color_space_of_file(config, USUAL_LINEAR_FILE) if config.getMajorVersion() >= 2 else ""
     shared = list[str]()

@@ -20,9 +20,8 @@ MOST_ERROR = 0.1
 def forward_lut(lut: AnyLut) -> AnyLut:
     """Return the response, from light to code values, of a LUT of its inverse whose domain holds [0, 1].
 
-    The inputs are uniform from the light of code 0 to the light of the largest code; other light is clipped to these.
-    The length is the first of `LENGTHS` whose `round_trip_error` at 10 bits is at most `MOST_ERROR`, or the last: a
-    response that is steeper in the blacks, as a power function is, needs more than 1024.
+    Its domain is the light of the codes; other light is clipped. Its length is the first of `LENGTHS` whose
+    `round_trip_error` at 10 bits is at most `MOST_ERROR`, or the last: power functions, steep in the blacks, need more.
     """
     for length in LENGTHS:
         forward = _sampled(lut, length)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import check_kinds
-from crfnet_core.response.curve import MOST_BRIGHTNESS, ResponseCurve, is_codes, numbers_of
+from crfnet_core.response.curve import BLOCK, MOST_BRIGHTNESS, ResponseCurve, is_codes, numbers_of
 from crfnet_core.types import EqualByFields, Float64Array, is_number
 
 from ..defaults import LUT_LENGTH
@@ -25,9 +25,6 @@ MAX_COMMENT = 500
 
 #: Largest difference between two values, or the ends of the domain; float32 has room for a thousand times as much.
 LARGEST_SPAN = 1e35
-
-#: Values that are computed at a time, because they fit into a core's cache.
-BLOCK = 32768
 
 #: The bit pattern of the largest subnormal float32.
 BELOW_NORMAL = 0x007FFFFF

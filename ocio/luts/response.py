@@ -16,8 +16,7 @@ from .rgb_lut import AnyLut, RgbLut1D, lut_of_channels
 #: Largest irradiance of brightness 0, as a part of the irradiance of brightness 1.
 MOST_BLACK = 0.01
 
-#: Largest first and least last code value of a LUT file, as parts of white: black is 0.125 in V-Log, and white of video
-#: 0.92. All codes before or behind would be alike.
+#: Largest first and least last code of a LUT file: black is 0.125 in V-Log, white 0.92 in video.
 MOST_FIRST, LEAST_LAST = 0.15, 0.9
 
 #: Largest mean of an inverse response, as a part of its range; the mean of linear light is 0.5, cameras have less.

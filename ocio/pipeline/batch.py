@@ -38,9 +38,9 @@ class Batch(ABC):
     options: EstimateOptions
     plates: PlateOptions
 
-    #: The name of the file of records in `out`, and whether each folder gets a config.
+    #: The name of the file of records in `out`; whether all photographs are estimated, and each folder gets a config.
     records_name: ClassVar[str]
-    has_config: ClassVar[bool] = False
+    has_estimates: ClassVar[bool] = False
 
     @property
     def records(self) -> RecordFile:
@@ -69,7 +69,7 @@ class Batch(ABC):
 
     def check(self) -> None:
         """Raise a CRFNetError if the response, the prior or the network cannot be read."""
-        if not self.response():
+        if not self.response() or self.has_estimates:
             check_network(self.options)
 
     def digest(self) -> str:
@@ -165,7 +165,7 @@ def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[
     be replaced, there are results of other options, or the folder cannot be used.
     """
     digest = batch.digest()
-    folders = dict.fromkeys(photographs.values()) if batch.has_config else {}
+    folders = dict.fromkeys(photographs.values()) if batch.has_estimates else {}
     configs = [batch.out / folder / CONFIG_NAME for folder in folders]
     stems = _distinct_stems(batch, photographs, records)
     tasks = [Task(batch, photo, folder, stems[photo], digest) for photo, folder in photographs.items()]

@@ -61,9 +61,9 @@ def deliver(
 ) -> tuple[Path, ...]:
     """Write the LUTs, the config, the linear plates and `more` files of a plan, by their writers; return the files.
 
-    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames,
-    of which `progress` counts, perhaps in another thread. Raise CRFNetError if a file exists and may not be replaced or
-    cannot be written, or OpenColorIO refuses the config; then, and if the callback raises, the folder is as it was.
+    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence of them, whose frames `progress`
+    counts, perhaps in another thread. Raise CRFNetError if a file cannot be written or OpenColorIO refuses the config;
+    then, and if the callback raises, the folder is as it was.
     """
     more = more or {}
     written = (*plan.targets, *more)

@@ -23,7 +23,7 @@ from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
 from .batch import Batch, Task
 from .delivery import deliver_estimate, estimated_light, with_light
-from .estimates import check_network, estimate_files, response_lut
+from .estimates import estimate_files, response_lut
 from .plan import OutputPlan
 from .records import PhotographRecord
 
@@ -38,7 +38,7 @@ class EstimateBatch(Batch):
 
     outputs: OutputOptions
     records_name = ESTIMATES
-    has_config = True
+    has_estimates = True
 
     def files(self, folder: Path, stem: str) -> OutputFiles:
         """Return the files of one photograph."""
@@ -47,11 +47,6 @@ class EstimateBatch(Batch):
     def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
         """Return the files of one photograph, except the config."""
         return self.files(folder, stem).unshared
-
-    def check(self) -> None:
-        """Raise a CRFNetError if the camera, the prior or the network cannot be read."""
-        self.response()
-        check_network(self.options)
 
     def done(self, task: Task) -> PhotographRecord:
         """Estimate one photograph and write its files."""

@@ -81,29 +81,22 @@ class FileEstimate:
 def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list[PlateSource]:
     """Return the sources to estimate one response from: of a sequence some frames, spread over it.
 
-    `names` are photographs, movies, and sequences as `find_frames` knows them; a file that is given twice counts once.
-    `frames` are the frames of a sequence or movie to choose from, as in `parse_frames`; all by default. Raise
-    PlateError if there are no such frames or a single photograph has none, or a name leads to a folder or to nothing.
+    `names` are photographs, movies, and sequences as `find_frames` knows them; `frames` chooses frames of the latter
+    two, as in `parse_frames`. Raise PlateError if there are none, or a name leads to a folder or to nothing.
     """
     patterns: dict[Path, str] = {}
     for name in names:
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
-        if is_single:
-            _check_file(name)
+        if is_single and is_folder(name):  # before the output is looked at
+            raise PlateError("folder_for_photograph", path=name, pattern=name / "shot.%04d.png")
+        if is_single and not os.path.lexists(name):
+            raise PlateError("no_such_file", path=name)
         if is_single or is_movie(name):
             patterns[name] = ""
         else:
             sequence = find_frames(name, frames)
             patterns |= dict.fromkeys(sample_frames(sequence), sequence.pattern)
     return [file_source(path, frames, pattern=patterns[path]) for path in unique(patterns)]
-
-
-def _check_file(name: Path) -> None:
-    """Refuse a folder, and the name of nothing, before the output is looked at."""
-    if is_folder(name):
-        raise PlateError("folder_for_photograph", path=name, pattern=name / "shot.%04d.png")
-    if not os.path.lexists(name):
-        raise PlateError("no_such_file", path=name)
 
 
 def estimate_files(

@@ -18,9 +18,8 @@ is_folder = os.path.isdir
 def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
     """Return photographs, and where their files go, relative to the output folder `out`.
 
-    Folders among `names` are searched with all their subfolders for `PHOTOGRAPH_SUFFIXES`, except names that begin with
-    a dot, an output folder inside them, and the sheets of earlier runs. The files of a photograph in a subfolder go
-    into a subfolder of the same name. A subfolder that cannot be read stands among the photographs, so that it gets a
+    Folders among `names` are searched with all their subfolders, which the output has, too; left out are hidden names,
+    the output folder, and sheets. A subfolder that cannot be read stands among the photographs, so that it gets a
     record. Raise PlateError if a folder holds no photograph or cannot be read.
     """
     photographs: dict[Path, Path] = {}
@@ -59,6 +58,8 @@ def unreadable_reason(photo: Path) -> str:
     """Return why a photograph, or a folder in its place, is refused before it is opened; an empty text if it is not."""
     try:
         str(photo).encode()
+        if not os.path.lexists(photo):
+            return "does not exist; check the name"
         if photo.is_dir():
             os.scandir(photo).close()
     except UnicodeEncodeError:

@@ -35,9 +35,8 @@ def plan_outputs(
 ) -> OutputPlan:
     """Return which files are written for photographs of one response, after checking that they can be; create nothing.
 
-    `sequence` is the pattern of the sequence from which they are: see `sequence_of`. Raise PlateError if a file cannot
-    be written or would replace another, or a photograph, or two photographs would have one linear plate; ConfigError if
-    the color space cannot be in a config.
+    `sequence` is the pattern of their sequence: see `sequence_of`. Raise as `plan_files`, and a PlateError if two
+    photographs would have one linear plate.
     """
     files = OutputFiles.named(folder, photos, outputs)
     owners: dict[str, Path] = {}
@@ -49,9 +48,9 @@ def plan_outputs(
 
 
 def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions, space: PlateColorSpace) -> OutputPlan:
-    """Return the plan of files with a config, after checking that they can be written; create nothing.
+    """Return the plan of files with a config, after checking as `check_targets` that they can be written.
 
-    Raise PlateError as `check_targets`; ConfigError if the color space cannot be in a config.
+    Create nothing. Raise ConfigError if the color space cannot be in a config.
     """
     targets, configs = files.unshared, [files.config]
     check_targets(files.report.parent, targets, photos=photos, configs=configs, overwrite=plates.overwrite)

@@ -84,8 +84,3 @@ class TestResuming:
         assert {name: (frames / name).read_bytes() for name in listed(frames)} == before
         assert crfnet(*same, *arguments, "--overwrite").code == 0
         assert crfnet(*same, *arguments).code == 0
-
-    def test_a_lut_in_another_format_is_the_same(self, crfnet, frames, look):
-        same = ("linearize", frames / "shot.####.jpg", "--out", frames / "l.####.exr")
-        assert crfnet(*same, "--lut", look / "plate.spi1d", "--frames", "1").code == 0
-        assert crfnet(*same, "--lut", look / "plate.cube").code == 0

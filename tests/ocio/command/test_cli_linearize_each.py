@@ -69,6 +69,8 @@ def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tm
     assert linearize(*arguments).code == 0
     assert (tmp_path / "out" / "a.exr").stat().st_mtime_ns == before
     assert len(records_in(tmp_path / "out")) == 3
+    (photographs / "a.jpg").unlink()
+    assert f"{photographs / 'a.jpg'}: does not exist" in linearize(photographs / "a.jpg", *arguments[1:]).err
 
 
 def test_a_recorded_file_that_was_cut_since_is_refused(linearize, photographs, look, tmp_path):

@@ -48,8 +48,8 @@ def test_an_absent_folder_is_refused(tmp_path):
 def write_over(path, *, pixels=slice(None), names="RGB", compression="zips"):
     """Write a comp with all metadata of a linear plate over it."""
     samples = read_image(path)[pixels, :, : len(names)]
-    attributes = {each.name: each.value for each in oiio.ImageBuf(str(path)).spec().extra_attribs}
-    attributes = {name: value for name, value in attributes.items() if isinstance(value, str | float)}
+    header = oiio.ImageBuf(str(path)).spec().extra_attribs
+    attributes = {each.name: each.value for each in header if isinstance(each.value, str | float)}
     attributes |= {"compression": compression}
     write_image(path, samples.astype(np.float16), names=tuple(names), **attributes)
 
