@@ -147,13 +147,12 @@ def test_other_arrays_are_refused(code, arrays):
 
 
 def test_a_bit_depth_that_the_array_does_not_have_and_arguments_of_another_kind_are_refused():
-    for choice in ({"name": 5}, {"metadata": "Canon"}):
+    for choice in ({"name": 5}, {"metadata": "Canon"}, {"make": 5}):
         with refused(CRFNetError, "argument_kind", name=next(iter(choice))):
-            Photo.from_array(CODES, color_order="RGB", **choice)
+            FileMetadata(**choice) if "make" in choice else Photo.from_array(CODES, color_order="RGB", **choice)
     assert code_of(CODES.astype(np.uint16) * 5, color_order="RGB", bit_depth=10) == "array_above_bit_depth"
-    assert {code_of(CODES, color_order="RGB", bit_depth=bits) for bits in (10, 4, 7.5, "8", True)} == {
-        "array_bit_depth"
-    }
+    for bits in (10, 4, 7.5, "8", True):
+        assert code_of(CODES, color_order="RGB", bit_depth=bits) == "array_bit_depth"
 
 
 def test_the_constructor_checks_its_pixels():

@@ -1,9 +1,9 @@
 """The metadata of an image file, from its header."""
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, get_type_hints
 
-from crfnet_core.errors import one_line
+from crfnet_core.errors import check_kinds, one_line
 from crfnet_core.photograph.metadata.color_tags import ColorTags, with_dpx_transfer
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
 
@@ -40,6 +40,10 @@ class FileMetadata:
     has_gain_map: bool = False  # whether the picture is the base of an HDR picture
     color: ColorTags = field(default_factory=ColorTags)  # the tags of its primaries and of its encoding
     is_turned: bool = False  # whether the reader has turned the picture upright
+
+    def __post_init__(self) -> None:
+        kinds = {name: kind for name, kind in get_type_hints(type(self)).items() if isinstance(kind, type)}
+        check_kinds(**{name: (getattr(self, name), kind) for name, kind in kinds.items()})
 
     @property
     def has_camera(self) -> bool:
