@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from crfnet_core.messages import SENTENCES
@@ -101,11 +102,13 @@ class CameraError(CRFNetError):
 
 
 def check_kinds(**arguments: tuple[object, Any]) -> None:
-    """Raise CRFNetError for an argument that is not of its kind."""
+    """Raise CRFNetError for an argument that is not of its kind, or a name of a file with a NUL in it."""
     for name, (value, kind) in arguments.items():
         if not isinstance(value, kind):
             needed = getattr(kind, "__name__", kind)
             raise CRFNetError("argument_kind", name=name, found=type(value).__name__, needed=needed)
+        if isinstance(value, str | Path) and "\0" in str(value):
+            raise CRFNetError("argument_kind", name=name, found="text with a NUL", needed="file's name")
 
 
 def beside_limits(value: float, *limits: float) -> str:

@@ -1,5 +1,7 @@
 """Every LUT format: round trips, independent readers, locales."""
 
+from functools import partial
+
 import colour
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -89,7 +91,8 @@ def test_a_file_is_replaced_only_when_asked_and_by_a_lut(tmp_path, suffix):
     path.write_text("mine")
     with refused(LutError, "exists"):
         write_lut(path, Lut1D([0, 1]))
-    for call in (lambda: write_lut(path, 5, overwrite=True), lambda: read_lut(5), lambda: inverse_response_lut(5)):
+    readings = (partial(read_lut, 5), partial(read_lut, "a\0.cube"), partial(inverse_response_lut, 5))
+    for call in (partial(write_lut, path, 5, overwrite=True), *readings):
         with refused(CRFNetError, "argument_kind"):
             call()
     assert path.read_text() == "mine"
