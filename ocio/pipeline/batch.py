@@ -23,7 +23,7 @@ from ..output_files import LONGEST_STEM, check_targets, folded, plain_stem
 from ..plates.light import PlateLight, is_finished
 from ..report.words import result_line
 from .estimates import check_network, load_camera_response, response_lut
-from .photographs import content_digest, real_place, unreadable_reason
+from .photographs import content_digest, file_state, real_place, unreadable_reason
 from .records import PhotographRecord, RecordFile
 
 #: Bytes that a number behind a stem may need.
@@ -151,7 +151,8 @@ class Task:
         if record.options != self.options or not all(path.exists() for path in self.targets):
             return False
         is_whole = all(is_finished(path) for path in self.targets if path.suffix == ".exr")
-        return is_whole and record.sha256 == content_digest(self.photo)
+        is_same = record.state == file_state(self.photo) or record.sha256 == content_digest(self.photo)
+        return is_whole and is_same
 
     def is_outdated(self, record: PhotographRecord) -> bool:
         """Return whether files are there that were made, by the record, of other content of the photograph."""

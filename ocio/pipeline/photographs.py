@@ -47,6 +47,14 @@ def real_place(photo: Path) -> Path:
     return Path(os.path.realpath(photo.parent), photo.name)
 
 
+def file_state(photo: Path) -> str:
+    """Return the size and the time of change of a photograph, which spare reading it; empty if it is not found."""
+    with suppress(OSError):
+        state = photo.stat()
+        return f"{state.st_size} {state.st_mtime_ns}"
+    return ""
+
+
 def content_digest(photo: Path) -> str:
     """Return the SHA-256 of a photograph; an empty text if it cannot be read, which its reader explains."""
     with suppress(OSError):

@@ -30,6 +30,7 @@ class PhotographRecord:
     photograph: str
     place: str
     sha256: str = ""
+    state: str = ""
     options: str = ""
     folder: str = ""
     lut: str = ""

@@ -12,7 +12,7 @@ from crfnet_core.types import Progress, cores, show_progress
 from ..errors import PlateError
 from ..output_files import output_folder
 from .batch import Batch, Task, plan_tasks
-from .photographs import content_digest, unreadable_reason
+from .photographs import content_digest, file_state, unreadable_reason
 from .records import PhotographRecord
 from .workers import worker_pool
 
@@ -107,8 +107,8 @@ def _recorded(task: Task) -> PhotographRecord:
 def _done_once(task: Task) -> PhotographRecord:
     """Do a task; if another run has just written its files, return the record that it is about to append."""
     try:
-        content = content_digest(task.photo)
-        return _record_of_existing(task) or replace(task.batch.done(task), sha256=content)
+        state, content = file_state(task.photo), content_digest(task.photo)
+        return _record_of_existing(task) or replace(task.batch.done(task), state=state, sha256=content)
     except CRFNetError:
         for _ in range(RECORD_TRIALS if task.existing else 0):
             record = task.batch.records.read().get(task.place)
