@@ -7,6 +7,7 @@ its options helps, looks the code up in its own table.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -102,13 +103,21 @@ class CameraError(CRFNetError):
 
 
 def check_kinds(**arguments: tuple[object, Any]) -> None:
-    """Raise CRFNetError for an argument that is not of its kind, or a name of a file with a NUL in it."""
+    """Raise CRFNetError for an argument that is not of its kind, or a text that cannot be the name of a file."""
     for name, (value, kind) in arguments.items():
         if not isinstance(value, kind):
             needed = getattr(kind, "__name__", kind)
             raise CRFNetError("argument_kind", name=name, found=type(value).__name__, needed=needed)
-        if isinstance(value, str | Path) and "\0" in str(value):
-            raise CRFNetError("argument_kind", name=name, found="text with a NUL", needed="file's name")
+        if isinstance(value, str | Path) and not _is_file_name(str(value)):
+            raise CRFNetError("argument_kind", name=name, found="text that no file's name can be", needed="file's name")
+
+
+def _is_file_name(text: str) -> bool:
+    """Return whether the system takes a text as the name of a file."""
+    try:
+        return b"\0" not in os.fsencode(text)
+    except UnicodeEncodeError:  # half of a surrogate pair
+        return False
 
 
 def beside_limits(value: float, *limits: float) -> str:

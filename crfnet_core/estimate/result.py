@@ -24,6 +24,9 @@ from crfnet_core.types import EqualByFields, Float64Array, is_number, number_of,
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 SCHEMA_VERSION = 1
 
+#: The largest uncertainty in a document: far more than any response has.
+MOST_FIGURE = 1000
+
 
 @dataclass(frozen=True, eq=False)
 class WindowEstimate(EqualByFields):
@@ -147,21 +150,26 @@ class ResponseEstimate(EqualByFields):
         """
         _check_version(document)
         try:
-            response, shares = document["response"], document["families"].items()
+            response, families = document["response"], typed_value(document["families"], dict)
+            shares = [number_of(share, least=0, most=1) for share in families.values()]
+            photos = tuple(typed_value(photo["name"], str) for photo in typed_value(document["photographs"], list))
+            windows = tuple(map(_window, typed_value(document["windows"], list)))
+            if (shares and abs(sum(shares) - 1) > 0.01) or any(window.photo >= len(photos) for window in windows):
+                raise ValueError("the shares of the kinds, or the photographs of the windows, are not all there")
             return cls(
                 curve=ResponseCurve(_row(response["brightness"], SAMPLES, least=0, most=1)),
                 weights=_row(document["weights"], COMPONENTS),
-                windows=tuple(map(_window, typed_value(document["windows"], list))),
+                windows=windows,
                 uncertainty=_number(document["uncertainty"]),
                 shape_uncertainty=_number(document["shape_uncertainty_stops"]),
                 band=np.array([_row(response[end], SAMPLES, least=0, most=1) for end in ("lower", "upper")]),
-                families={Family(name): number_of(share, least=0, most=1) for name, share in shares},
+                families=dict(zip(map(Family, families), shares, strict=True)),
                 verdict=Verdict(document["verdict"]),
                 prior=typed_value(document["prior"], str),
                 origins=typed_value(document["metadata"], tuple[FileOrigin, ...]),
                 warnings=tuple(map(Notice.from_text, typed_value(document["warnings"], tuple[str, ...]))),
                 model=typed_value(document["model"], str),
-                photos=tuple(typed_value(photo["name"], str) for photo in typed_value(document["photographs"], list)),
+                photos=photos,
                 recognition=typed_value(document.get("recognition"), Recognition | None),
                 camera=typed_value(document.get("camera"), CameraAnswer | None),
             )
@@ -210,5 +218,5 @@ def _row(entry: object, length: int, **bounds: float) -> Float64Array:
 
 
 def _number(entry: object) -> float:
-    """Return a number of a document, 0 or more; NaN for null."""
-    return math.nan if entry is None else typed_value(entry, float)
+    """Return a figure of a document, from 0 to `MOST_FIGURE`; NaN for null."""
+    return math.nan if entry is None else number_of(entry, least=0, most=MOST_FIGURE)

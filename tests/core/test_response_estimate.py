@@ -85,10 +85,10 @@ def test_another_document_is_refused(document, code):
 
 #: Entries of a document, and values that they do not have.
 DAMAGES: dict[str, tuple[object, ...]] = {
-    "photographs": ({}, "x", [{"name": 5}], ["a.jpg"]),
+    "photographs": ({}, "x", [], [{"name": 5}], ["a.jpg"]),
     "verdict": ("splendid", None),
-    **dict.fromkeys(("uncertainty", "shape_uncertainty_stops"), (True, -5, math.nan, math.inf, "1", [])),
-    "families": ([], {"daguerreotype": 1}, {"phone": 1.5}, {"phone": None}, {"phone": True}),
+    **dict.fromkeys(("uncertainty", "shape_uncertainty_stops"), (True, -5, math.nan, math.inf, 1e308, "1", [])),
+    "families": ([], {"daguerreotype": 1}, {"phone": 0.5}, {"phone": 1.5}, {"phone": None}, {"phone": True}),
     "recognition": ("x", {"kind": "flat frame"}, {"kind": "flat frame", "reason": "", "advice": "", "errors": ["1"]}),
     "camera": ("x", [], {"name": 5, "basis": ""}),
     **dict.fromkeys(("prior", "model"), (None, 1, [], math.nan)),

@@ -91,8 +91,8 @@ def test_a_file_is_replaced_only_when_asked_and_by_a_lut(tmp_path, suffix):
     path.write_text("mine")
     with refused(LutError, "exists"):
         write_lut(path, Lut1D([0, 1]))
-    readings = (partial(read_lut, 5), partial(read_lut, "a\0.cube"), partial(inverse_response_lut, 5))
-    for call in (partial(write_lut, path, 5, overwrite=True), *readings):
+    paths = (partial(read_lut, name) for name in (5, "a\0.cube", "\ud800.cube"))
+    for call in (partial(write_lut, path, 5, overwrite=True), partial(inverse_response_lut, 5), *paths):
         with refused(CRFNetError, "argument_kind"):
             call()
     assert path.read_text() == "mine"
