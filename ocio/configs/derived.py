@@ -67,9 +67,21 @@ def write_derived_config(
     with all_or_none(files, overwrite=overwrite) as staged:
         for name, lut in luts.items():
             write_lut(staged / name, lut)
-        write_config(staged / CONFIG_NAME, config, check=check)
+        try:
+            write_config(staged / CONFIG_NAME, config, check=check)
+        except ConfigError:
+            _check_valid(base)
+            raise
     plates = tuple(plate for plate in plates_in_config(config) if plate.name in check)
     return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *without))))
+
+
+def _check_valid(base: ConfigSource) -> None:
+    """Raise a ConfigError if OpenColorIO finds the base itself not valid."""
+    try:
+        base.config.validate()
+    except OCIO.Exception as problem:
+        raise ConfigError("config_refused", path=base.name, reason=problem) from problem
 
 
 def _new_spaces(

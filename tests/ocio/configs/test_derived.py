@@ -161,9 +161,13 @@ class TestBase:
         else:
             config.addNamedTransform(OCIO.NamedTransform(**names, forwardTransform=OCIO.MatrixTransform()))
         studio.write_text(config.serialize())
-        done = add(studio, tmp_path / "new", small_look)
-        assert [plate.name for plate in done.plates] == [f"{NAME} (look)"]
-        assert f"{NAME} (look)" in loaded(done.path).getColorSpaceNames()
+        assert [plate.name for plate in add(studio, tmp_path / "new", small_look).plates] == [f"{NAME} (look)"]
+        assert f"{NAME} (look)" in loaded(tmp_path / "new" / "config.ocio").getColorSpaceNames()
+
+    def test_one_that_is_not_valid_is_named(self, studio, small_look, tmp_path):
+        studio.write_text(studio.read_text().replace("colorspace: sRGB", "colorspace: absent"))
+        with refused(ConfigError, "config_refused", path=str(studio)):
+            add(studio, tmp_path / "new", small_look)
 
     def test_hidden_plates_are_listed(self, studio, small_look, tmp_path):
         config = loaded(add(studio, tmp_path / "new", small_look).path)
@@ -218,8 +222,8 @@ class TestAgain:
         assert done.without_rule == ("plate01.jpg",)
 
     def test_linear_files_of_one_name_and_different_spaces_get_no_rule(self, tmp_path):
-        looks = [write_look(tmp_path / "a", interop_id="lin_ap1_scene"), write_look(tmp_path / "b")]
-        done = add(STUDIO, tmp_path / "show", *looks)
+        look = write_look(tmp_path / "a", interop_id="lin_ap1_scene")
+        done = add(STUDIO, tmp_path / "show", look, write_look(tmp_path / "b"))
         assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
         assert "plate01_linear.exr" in done.without_rule
 
