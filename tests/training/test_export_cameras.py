@@ -50,7 +50,7 @@ def cameras(tmp_path):
 
 def test_a_stack_becomes_a_camera_with_the_uncertainty_of_its_measurement(cameras):
     (camera,) = cameras({})
-    assert (camera.name, camera.basis) == ("NIKON D90", "measured from 11 exposures (grade A), ISO 200")
+    assert (camera.name, camera.basis) == ("NIKON D90", "measured from 11 exposures, ISO 200")
     assert camera_estimate(camera).uncertainty == pytest.approx(0.5, abs=0.01)
     assert camera.shape_stops == 0.05
 
@@ -58,7 +58,7 @@ def test_a_stack_becomes_a_camera_with_the_uncertainty_of_its_measurement(camera
 def test_stacks_that_agree_are_one_setting_of_which_the_most_certain_is_kept(cameras):
     other = {"stack": "b", "gt": "gt/2.21.csv", "uncertainty_L2": "0.3", "iso": "800"}
     (camera,) = cameras({}, other)
-    assert camera.basis == "measured from 11 exposures (grade A, the best of 2 stacks), ISO 200 to 800"
+    assert camera.basis == "measured from 11 exposures (the best of 2 stacks), ISO 200 to 800"
     assert camera.scale_stops < camera.shape_stops
 
 
@@ -87,7 +87,7 @@ def test_a_reason_for_caution_is_kept(cameras):
     assert camera.settings.camera == "NIKON D90"
 
 
-def test_raw_files_become_a_camera_with_a_grade(tmp_path, root, true_response):
+def test_raw_files_become_a_camera(tmp_path, root, true_response):
     folder = tmp_path / "raw_pairs"
     (tmp_path / "real_bodies").mkdir()
     (tmp_path / "real_bodies" / "cases.csv").write_text(",".join(ROW) + "\n")
@@ -96,5 +96,5 @@ def test_raw_files_become_a_camera_with_a_grade(tmp_path, root, true_response):
     for number in (1, 2):
         make_pair(folder, scene, true_response, PairOptions(seed=number, brightest=97.5 + number), f"{number}")
     (camera,) = measured_cameras(tmp_path)
-    assert re.fullmatch(r"2 raw files \(grade [ABC], white by .+\)", camera.source)
+    assert re.fullmatch(r"2 raw files \(white by .+\)", camera.source)
     assert shape_error(true_response, camera.curve) < camera.shape_stops

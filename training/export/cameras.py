@@ -35,9 +35,6 @@ SHAPE_STOPS = 0.05
 #: Decimals of the responses: their least step is 1e-7.
 DECIMALS = 8
 
-#: Grade -> the largest standard deviation of the E_est of the stacks that have it.
-GRADES = {"A": 0.6, "B": 1.1}
-
 #: The folder of raw files with their JPEGs, all of one body.
 RAW_PAIRS = "raw_pairs"
 
@@ -56,7 +53,6 @@ class Stack:
     curve: ResponseCurve
     error: float  # standard deviation of its E_est
     frames: str  # number of exposures, or nothing where the list has none
-    grade: str
     caution: str  # why it is less certain, or nothing
 
     def is_like(self, other: Self) -> bool:
@@ -94,7 +90,7 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
     first = stacks[0]
     total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
     shape = min(SHAPE_STOPS, total)
-    best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
+    best = f" (the best of {len(stacks)} stacks)" if len(stacks) > 1 else ""
     frames = f"{first.frames} exposures" if first.frames else "an exposure stack"
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
     return Camera(
@@ -102,25 +98,23 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
         curve=_smoothed(first.curve),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
-        source=f"{frames} (grade {first.grade}{best})",
+        source=frames + best,
         settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
         warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
     )
 
 
 def raw_camera(found: PairCalibration) -> Camera:
-    """Return the camera that was measured from raw files and their JPEGs, smoothed and graded as stacks are."""
+    """Return the camera that was measured from raw files and their JPEGs, smoothed as stacks are."""
     iso = tuple(sorted({shot.iso for shot in found.shots if shot.iso}))
     settings = replace(CameraSettings.from_metadata(found.metadata), iso=iso)
     shape, scale = found.uncertainty.shape_stops, found.uncertainty.scale_stops
-    error = float(np.linalg.norm(brightness_per_stop(found.curve) * np.hypot(shape, scale)))
-    grade = next((name for name, most in GRADES.items() if error <= most), "C")
     return Camera(
         name=settings.camera,
         curve=_smoothed(found.curve),
         shape_stops=round(shape, 3),
         scale_stops=round(scale, 3),
-        source=f"{len(found.shots)} raw files (grade {grade}, white by {found.white_basis})",
+        source=f"{len(found.shots)} raw files (white by {found.white_basis})",
         settings=settings,
         warnings=tuple(map(str, found.warnings)),
     )
@@ -145,7 +139,6 @@ def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
         curve=read_measured(folder / row["gt"]),
         error=float(row["uncertainty_L2"]),
         frames=row["n_frames"],
-        grade=row["grade"],
         caution=caution(row),
     )
 
