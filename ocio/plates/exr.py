@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import first_line, oiio_message
-from crfnet_core.photograph.image_io.header_checks import attribute_value
+from crfnet_core.photograph.image_io.header_checks import attributes_of
 
 from ..errors import PlateError
 
@@ -54,14 +54,10 @@ def linear_header(
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
         setattr(header, name, getattr(source, name))
     header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
-    for attribute in source.extra_attribs:
-        if attribute.name in COPIED_METADATA:
-            # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
-            value = attribute_value(source, attribute)
-            value = one_line(value) if isinstance(value, str) else value
-            if attribute.name == "PixelAspectRatio" and not 1e-6 < float(value) < 1e6:  # OpenEXR's; 0 in FFmpeg's DPX
-                continue
-            header.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
+    for name, kind, value in attributes_of(source):
+        is_impossible = name == "PixelAspectRatio" and not 1e-6 < float(value) < 1e6  # in OpenEXR; FFmpeg's DPX has 0
+        if name in COPIED_METADATA and not is_impossible:
+            header.attribute(name, kind, one_line(value) if isinstance(value, str) else value)
     header.attribute("compression", "zips")
     standard: dict[str, str | float] = {}
     for name, others in STANDARD_NAMES.items():

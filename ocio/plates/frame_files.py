@@ -12,6 +12,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
+from crfnet_core.photograph.image_io.header_checks import text_attribute
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
 from crfnet_core.photograph.recognition import refuse_linear
@@ -161,7 +162,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     """Refuse an OpenEXR file that is or may be linear, is too large or deep, or holds no RGB or gray picture."""
-    space = header.get_string_attribute("colorInteropID")
+    space = text_attribute(header, "colorInteropID")
     if space.startswith("lin_"):
         raise PlateError("plate_is_linear", path=path, space=space)
     if header.image_pixels() * max(header.nchannels, 4) > 4 * MAX_PIXELS:  # all are decompressed

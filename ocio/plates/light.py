@@ -12,6 +12,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.photograph.image_io import oiio_message
+from crfnet_core.photograph.image_io.header_checks import attributes_of
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.response.curve import ResponseCurve
 
@@ -126,6 +127,6 @@ def _attributes(path: Path) -> dict[str, Any]:
         return {}
     with closing(source):
         header = source.spec()
-        attributes = {attribute.name: attribute.value for attribute in header.extra_attribs}
+        attributes = {name: value for name, _, value in attributes_of(header)}
     is_ours = attributes.get(FORM) == written_form(header) and is_whole(path, header)
     return {**attributes, _DEPTH: str(header.format)} if is_ours else {}

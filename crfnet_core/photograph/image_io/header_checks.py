@@ -2,7 +2,8 @@
 
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +47,7 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     check_size(path, header.width, header.height)
     if header.depth != 1:
         raise PhotoError("volume", path=path)
-    if kind == "JPEG XL" and header.get_string_attribute("ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
+    if kind == "JPEG XL" and text_attribute(header, "ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
         raise PhotoError("jxl_linear", path=path)
     _check_color(path, header, kind)
     sample = str(header.format)
@@ -73,21 +74,37 @@ def check_dpx_lines(path: Path, header: Any) -> None:
         raise PhotoError("coding_not_read", path=path, kind="DPX", problem="padded lines that its header does not name")
 
 
-def attribute_value(header: Any, attribute: Any) -> Any:
-    """Return the value of an attribute; its own `value` crashes Blender 4.5 if it is an empty text."""
-    if not attribute.name.isprintable():  # names that are not UTF-8 cannot be asked for
-        return ""
-    is_text = str(attribute.type) == "string"
-    return header.get_string_attribute(attribute.name) if is_text else attribute.value
+def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
+    """Yield name, type and value of each attribute whose name is printable; others cannot be asked for.
+
+    The `value` of an empty text crashes Blender 4.5, and OpenImageIO's Python drops a single integer of 16 bits if it
+    is given its type.
+    """
+    for attribute in header.extra_attribs:
+        if (name := _decoded(partial(getattr, attribute, "name"))).isprintable():
+            value = text_attribute(header, name) if str(attribute.type) == "string" else attribute.value
+            yield name, "int" if isinstance(value, int) else attribute.type, value
+
+
+def text_attribute(header: Any, name: str) -> str:
+    """Return a text in a header; empty where it is absent."""
+    return _decoded(partial(header.get_string_attribute, name))
+
+
+def _decoded(read: Callable[[], Any]) -> str:
+    """Return a text of OpenImageIO; bytes that are not UTF-8 become lone surrogates, as from version 3.2 on."""
+    try:
+        return str(read())
+    except UnicodeDecodeError as problem:
+        return problem.object.decode(errors="surrogateescape")
 
 
 def with_plain_texts(header: Any) -> Any:
-    """Return a header whose texts are printable: OpenImageIO hands bytes that are not UTF-8 on as lone surrogates."""
+    """Return a header whose texts are printable."""
     plain = oiio.ImageSpec(header)
-    for attribute in header.extra_attribs:
-        value = attribute_value(header, attribute)
+    for name, _, value in attributes_of(header):
         if isinstance(value, str) and not value.isprintable():
-            plain.attribute(attribute.name, one_line(value))
+            plain.attribute(name, one_line(value))
     return plain
 
 
@@ -107,10 +124,9 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
         carried = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
         if source is not None:
             source.close()
-    for attribute in carried.extra_attribs:
-        if attribute.name.isprintable() and not attribute.name.startswith(("jpeg:", "oiio:")):
-            value = attribute_value(carried, attribute)  # OpenImageIO's Python drops a single integer of 16 bits
-            complete.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
+    for name, kind, value in attributes_of(carried):
+        if not name.startswith(("jpeg:", "oiio:")):
+            complete.attribute(name, kind, value)
     return complete
 
 
@@ -138,11 +154,7 @@ def damaged(path: Path, kind: str, problem: str) -> PhotoError:
 
 def oiio_message(source: Any = oiio) -> str:
     """Return OpenImageIO's last message, of an open file or else of the library, on plain lines."""
-    try:
-        problem = str(source.geterror())
-    except UnicodeDecodeError as failure:
-        problem = failure.object.decode(errors="replace")
-    return "\n".join(map(one_line, problem.split("\n")))
+    return "\n".join(map(one_line, _decoded(source.geterror).split("\n")))
 
 
 def first_line(problem: str) -> str:

@@ -11,6 +11,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
@@ -188,6 +189,9 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
+        if kind == "WebP":  # of which OpenImageIO reads no EXIF before version 3.2
+            with suppress(OSError, ValueError), Image.open(path) as picture:
+                header = with_segments(header, picture.info)
         if kind == "JPEG XL":
             header = _with_boxes(header, path)
         if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
