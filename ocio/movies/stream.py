@@ -116,16 +116,16 @@ class MovieStream:
     def __str__(self) -> str:
         """Return one line for people: the movie, and the values taken for properties that it does not state."""
         (width, height), rate = self.picture.size, f" at {float(self.rate):.6g} per second" if self.rate else ""
+        hides_alpha = self.metadata.get("alpha_mode") == "1" and "a" not in self.picture.samples  # of VP8 and VP9
         interlaced = "interlaced: its frames mix two moments, so deinterlace it for linear plates"
         parts = [
             f"{self.codec}, {width} x {height}, {self.bit_depth} bits, {self.frame_count} frames{rate}",
             str(self.picture.coding),
-            f"tagged {self.color.transfer}" if self.color.transfer else "",
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
             interlaced if self.picture.is_interlaced else "",
             "the file is cut short: copy it again" if self.is_cut else "",
-            "its alpha is left out" if self.metadata.get("alpha_mode") == "1" else "",  # of VP8 and VP9, not decoded
+            "its alpha is left out" if hides_alpha else "",
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
 

@@ -42,7 +42,9 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
     if choice != PRIMARIES[0]:
         raise PlateError("unknown_primaries", primaries=choice, choices=", ".join(PRIMARIES))
-    return PlatePrimaries(tags.primaries, tags.source) if tags.source else PlatePrimaries(REC709, BY_CONVENTION)
+    if not tags.source:
+        return PlatePrimaries(REC709, BY_CONVENTION)
+    return PlatePrimaries(tags.primaries, tags.source + (f", tagged {tags.transfer}" if tags.transfer else ""))
 
 
 def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0]) -> PlatePrimaries:

@@ -20,7 +20,7 @@ from crfnet_core.colorimetry import (
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
-from crfnet_core.photograph.metadata.icc import TABLES, read_icc
+from crfnet_core.photograph.metadata.icc import DAMAGED, OTHER_COLORS, TABLES, read_icc
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.color_profiles import OWN, exif_segment, matrix_profile, numbers, profile, write_tagged
 from tests.helpers.crafted_files import with_jpeg_segment
@@ -107,9 +107,15 @@ class TestIccProfiles:
     def test_what_gives_no_primaries_is_unknown(self, icc):
         assert read_icc(icc).primaries is None
 
-    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp", profile({}, color=b"GRAY")])
-    def test_gray_profiles_and_other_bytes_say_nothing(self, icc):
-        assert read_icc(icc) == ColorTags()
+    @pytest.mark.parametrize(
+        ("icc", "source"),
+        [
+            *((b"", ""), (profile({}, color=b"GRAY"), ""), (bytes(200), DAMAGED), (b"acsp", DAMAGED)),
+            (profile({}, color=b"CMYK"), OTHER_COLORS),
+        ],
+    )
+    def test_profiles_of_other_colors_and_other_bytes_say_no_primaries(self, icc, source):
+        assert read_icc(icc) == ColorTags(source=source)
 
     def test_damage_anywhere_in_a_profile_is_no_error(self):
         rng = np.random.default_rng(0)

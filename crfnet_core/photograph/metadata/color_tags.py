@@ -28,6 +28,9 @@ PRIMARIES = {
 #: Code points without a meaning there: reserved and unspecified.
 UNSPECIFIED = (0, 2, 3)
 
+#: The beginning of the source of others that are not in `PRIMARIES`.
+CICP_PRIMARIES = "CICP primaries"
+
 #: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
 TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 17: "SMPTE ST 428-1", 18: "HLG"}
 
@@ -64,7 +67,7 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
         return ColorTags()
     primaries, transfer = PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], "")
     if not primaries and codes[0] not in UNSPECIFIED:
-        return ColorTags(None, transfer, f"CICP primaries {codes[0]}")
+        return ColorTags(None, transfer, f"{CICP_PRIMARIES} {codes[0]}")
     return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
 
 

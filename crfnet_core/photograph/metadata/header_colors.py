@@ -6,14 +6,17 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Primaries
-from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
-from crfnet_core.photograph.metadata.icc import TABLES, read_icc
+from crfnet_core.photograph.metadata.color_tags import CICP_PRIMARIES, PRIMARIES, ColorTags, cicp_tags
+from crfnet_core.photograph.metadata.icc import OTHER_COLORS, TABLES, read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 
 #: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.
 DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
+
+#: How sources of primaries begin that cannot be expressed by primaries, and are believed nevertheless.
+DECISIVE = (TABLES, OTHER_COLORS, CICP_PRIMARIES)
 
 #: The part of a Color Interop Forum name, such as "srgb_p3d65_scene", that stands for the primaries.
 _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
@@ -34,7 +37,7 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
     others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
     tags = [each for each in (*first, *others) if each.source]
-    best = next((each for each in tags if each.primaries or each.source == TABLES), (*tags, ColorTags())[0])
+    best = next((each for each in tags if each.primaries or each.source.startswith(DECISIVE)), (*tags, ColorTags())[0])
     transfer = next((each.transfer for each in tags if each.transfer), "")
     return ColorTags(best.primaries, transfer, best.source)
 

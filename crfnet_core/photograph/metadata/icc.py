@@ -29,8 +29,9 @@ def _hlg_stops(codes: Float64Array) -> Float64Array:
     return np.asarray(np.log2(np.where(codes <= 0.5, codes**2 / 3, above)))
 
 
-#: The source of tags from an ICC profile, from one that works by tables, and from one that gives no primaries else.
-SOURCE, TABLES, DAMAGED = "ICC profile", "ICC profile of tables", "damaged ICC profile"
+#: The source of tags from an ICC profile; from one that works by tables, one of CMYK or Lab, and a damaged one.
+SOURCE, TABLES = "ICC profile", "ICC profile of tables"
+OTHER_COLORS, DAMAGED = "ICC profile of other colors", "damaged ICC profile"
 
 #: Largest difference in XYZ from named primaries by which a profile's colorants count as theirs. Known profiles differ
 #: by up to 0.0002 (rounding to four digits, other values of D65); two of the named spaces by 0.06 or more.
@@ -66,11 +67,11 @@ _CICP = re.compile(rb"cicp\0{4}(....)", re.DOTALL)
 
 
 def read_icc(profile: bytes) -> ColorTags:
-    """Return the tags of an ICC profile; empty if it cannot be read, or is of gray and of an ordinary curve."""
+    """Return the tags of an ICC profile; empty without one, or if it is of gray and of an ordinary curve."""
     try:
         return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
     except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):  # damaged names are a ValueError
-        return ColorTags()
+        return ColorTags(source=DAMAGED if profile else "")
 
 
 def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
@@ -79,6 +80,8 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     space = facts.xcolor_space.strip()
     transfer = profile_transfer(facts.profile_description or "")
     transfer = transfer or (_encoding(opened, _MODES[space]) if space in _MODES else "")
+    if space not in _MODES:
+        return ColorTags(transfer=transfer, source=OTHER_COLORS)
     if space != "RGB":
         return ColorTags(transfer=transfer, source=SOURCE) if transfer else ColorTags()
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in profile

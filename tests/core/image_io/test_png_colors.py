@@ -45,6 +45,7 @@ def test_named_chromaticities_are_known(tmp_path, primaries):
         ((9, 18, 0, 1), ColorTags(REC2020, "HLG", "CICP")),
         ((2, 2, 0, 1), ColorTags(ADOBE_RGB, "", "ICC profile")),
         ((2, 18, 0, 1), ColorTags(ADOBE_RGB, "HLG", "ICC profile")),
+        ((10, 13, 0, 1), ColorTags(None, "", "CICP primaries 10")),
     ],
 )
 def test_codes_come_before_the_profile(tmp_path, codes, expected):

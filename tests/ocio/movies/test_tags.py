@@ -78,6 +78,7 @@ def test_the_container_counts_where_frames_have_no_tags(tmp_path):
     assert (movie.color.primaries, movie.color.transfer) == (REC2020, "PQ")
 
 
-def test_alpha_that_is_not_decoded_is_named(tmp_path):
-    movie = read_stream(write_movie(tmp_path / "a.webm", codec="libvpx-vp9", metadata={"alpha_mode": "1"}))
-    assert "its alpha is left out" in str(movie)
+@pytest.mark.parametrize(("codec", "form", "is_named"), [("libvpx-vp9", "yuv420p", True), ("ffv1", "yuva420p", False)])
+def test_alpha_that_is_not_decoded_is_named(tmp_path, codec, form, is_named):
+    movie = read_stream(write_movie(tmp_path / "a.mkv", codec=codec, form=form, metadata={"alpha_mode": "1"}))
+    assert ("its alpha is left out" in str(movie)) == is_named
