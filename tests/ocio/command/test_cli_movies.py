@@ -20,8 +20,6 @@ from tests.helpers.schemas import problems_by, read_schema
 
 needs_av = pytest.mark.usefixtures("av")
 
-ROOT = Path(__file__).parents[3]
-
 
 @pytest.fixture
 def av():
