@@ -66,13 +66,6 @@ def test_linearize_equals_the_plate_of_estimate(linear, look):
     np.testing.assert_array_equal(linear, read_image(look / "plate_linear.exr"))
 
 
-@pytest.mark.parametrize("suffix", ["spi1d", "cube", "clf"])
-def test_oiiotool_with_the_lut(linear, look, plate, oiiotool, tolerance, tmp_path, suffix):
-    out = tmp_path / "out.exr"
-    oiiotool(plate, "--ociofiletransform", look / f"plate.{suffix}", "-d", "float", "-o", out)
-    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
-
-
 @pytest.mark.parametrize(
     ("rule", "convert"), [((), ("--colorconvert", "CRF plate", "scene_linear")), (("--autocc",), ())]
 )

@@ -57,10 +57,6 @@ class TestForward:
         assert errors[0] < 0.5 < errors[1]
         assert f"in codes, {errors[0]:.2g} of 8 bits and {errors[1]:.2g} of 10 bits" in forward.comments[1]
 
-    def test_light_above_white_is_clipped(self, true_response):
-        forward = forward_lut(inverse_response_lut(true_response))
-        assert forward.apply(np.array([-1.0, 0.0, 1.0, 7.0])).tolist() == [0, 0, 1, 1]
-
     def test_its_domain_is_the_light_of_the_codes(self, true_response):
         brighter = Lut1D(inverse_response_lut(true_response).values * 4)
         forward = forward_lut(brighter)

@@ -1,5 +1,3 @@
-"""Every LUT format: round trips, independent readers, locales."""
-
 import colour
 import numpy as np
 import PyOpenColorIO as OCIO
