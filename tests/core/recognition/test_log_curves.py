@@ -1,5 +1,3 @@
-"""The published curves, against colour-science and OpenColorIO's own."""
-
 import numpy as np
 import pytest
 

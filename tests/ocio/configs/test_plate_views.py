@@ -1,5 +1,7 @@
 """Views "as photographed": CG and plate through the camera's response, and highlights above the plate's white."""
 
+import math
+
 import colour
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -102,6 +104,11 @@ class TestRollOff:
         with np.errstate(invalid="ignore"):
             expected = np.where(x <= KNEE, x, KNEE + SOFTNESS * np.log(1 + (x - KNEE) / SOFTNESS))
         np.testing.assert_allclose(self.rolled_off(x), expected, atol=2e-6)
+
+    def test_white_and_the_end_are_as_stated(self):
+        end = KNEE + SOFTNESS * (math.exp((1 - KNEE) / SOFTNESS) - 1)
+        assert (round(end, 1), round(math.log2(end), 1)) == (14.2, 3.8)
+        np.testing.assert_allclose(self.rolled_off([1, end]), [0.865, 1], atol=5e-4)
 
 
 def test_many_plates_do_not_bury_the_other_views():

@@ -1,5 +1,3 @@
-"""The response as a LUT, and LUTs with a table for each channel; OpenColorIO and ffmpeg judge both."""
-
 import shutil
 import subprocess
 

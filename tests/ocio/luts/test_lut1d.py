@@ -1,5 +1,3 @@
-"""The lookup table: its interpolation in both directions, and the inverse response as a table."""
-
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest

@@ -1,5 +1,3 @@
-"""The quick evaluation, from the command line to the report, on the bundled lights."""
-
 import json
 from dataclasses import replace
 
