@@ -65,13 +65,6 @@ def test_every_function_that_a_document_names_is_there(root):
     assert not [name for name in names if not exists(root, name)]
 
 
-def test_a_name_that_is_not_there_is_found_out(root):
-    wrong = ("nowhere", "response.emor.EmorBasis.nothing", "response.metrics.estimation_error.nothing")
-    assert not any(exists(root, f"crfnet_core.{name}") for name in wrong)
-    assert exists(root, "crfnet_core.read_photo")
-    assert exists(root, "crfnet_core.statistics.windows.Window.x")
-
-
 def test_every_file_that_a_document_names_is_there(root):
     pattern = re.compile(r"`((?:crfnet_core|ocio|blender_addon|training|tests|docs)/[\w./]+)`")
     texts = {path: path.read_text(encoding="utf-8") for path in documents(root)}

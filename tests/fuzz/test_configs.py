@@ -1,5 +1,3 @@
-"""OpenColorIO configs: plates are added to a damaged one, which then means the same, or it is refused."""
-
 from contextlib import suppress
 
 import numpy as np

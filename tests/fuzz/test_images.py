@@ -1,5 +1,3 @@
-"""Image files: whatever is damaged, a reader answers with samples or with one line, soon and in little memory."""
-
 import shutil
 
 import numpy as np

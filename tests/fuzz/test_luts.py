@@ -1,5 +1,3 @@
-"""LUT files: what is read, OpenColorIO reads too, and both make the same of every value."""
-
 import numpy as np
 import PyOpenColorIO as OCIO
 

@@ -6,9 +6,6 @@ import subprocess
 import numpy as np
 import pytest
 
-#: Options of an encoder that loses nothing.
-LOSSLESS = {"qp": "0"}
-
 
 def run_ffmpeg(*arguments):
     """Run FFmpeg and return what it writes to its standard output; skip the test where it, or an encoder, is absent."""

@@ -1,5 +1,3 @@
-"""The shared constants agree with the core and of the formats."""
-
 import numpy as np
 
 from crfnet import defaults

@@ -1,5 +1,3 @@
-"""The sheet: a PNG of fixed size and bytes, for any photograph and any estimate."""
-
 import dataclasses
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""A response from raw files and their JPEGs: what is measured, what is refused, which files belong together."""
-
 import re
 
 import numpy as np

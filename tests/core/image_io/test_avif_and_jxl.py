@@ -45,7 +45,7 @@ def test_avif_of_10_bits_with_odd_width_in_limited_and_full_range(tmp_path, colo
     codes = np.dstack([x * 7, y * 10, 400 + x + y])
     deep_avif(tmp_path / "a.avif", codes, color_range)
     values = read_codes(tmp_path / "a.avif")
-    assert values.codes.shape == (98, 131, 3)
+    assert (values.codes.shape, values.bit_depth) == ((98, 131, 3), 10)
     assert np.abs(values.codes.astype(int) - codes).mean() < 6
 
 

@@ -10,19 +10,6 @@ def flat(*shares, size=1000):
     return np.repeat(values.reshape(size, size, 1), 3, axis=2).astype(np.float32)
 
 
-def test_black_middle_and_white_are_quantiles():
-    levels = Levels.from_pixels(flat((0.2, 0.4), (0.5, 0.59), (0.8, 0.01)))
-    assert (levels.black, levels.middle, levels.white) == pytest.approx((0.2, 0.5, 0.8), abs=1 / 1023)
-
-
-def test_dead_pixels_and_reflections_do_not_count():
-    pixels = flat((0.3, 0.5), (0.6, 0.5))
-    pixels[:2, :4] = 0  # 8 of a million
-    pixels[-1, :900] = 1
-    levels = Levels.from_pixels(pixels)
-    assert (levels.black, levels.white) == pytest.approx((0.3, 0.6), abs=1 / 1023)
-
-
 def test_the_picture_is_not_changed_and_a_large_one_is_thinned():
     pixels = flat((0.25, 0.5), (0.75, 0.5), size=2000)
     before = pixels.copy()

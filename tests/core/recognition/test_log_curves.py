@@ -1,5 +1,3 @@
-"""The published curves, against colour-science and OpenColorIO's own."""
-
 import numpy as np
 import pytest
 
@@ -25,17 +23,13 @@ def test_the_curve_is_that_of_colour_science(name):
     np.testing.assert_allclose(LOG_CURVES[name](REFLECTANCE), expected, atol=2e-5)
 
 
-def test_every_curve_has_an_independent_judge():
-    assert set(LOG_CURVES) - set(COLOUR_SCIENCE) == {"Blackmagic Film Gen 5"}
-
-
 @pytest.mark.parametrize("name", COLOR_SPACES)
 def test_the_named_color_space_of_the_aces_config_undoes_the_curve(name):
     """OpenColorIO turns codes of gray back into reflectance: its matrices keep gray, or scale it by the white point."""
     ocio = pytest.importorskip("PyOpenColorIO")
     config = ocio.Config.CreateFromFile("ocio://studio-config-latest")
     to_linear = config.getProcessor(COLOR_SPACES[name], "ACES2065-1").getDefaultCPUProcessor()
-    reflectance = np.array([0.02, 0.18, 0.9, 4.0])
+    reflectance = np.array([0.02, 0.18, 0.9, 4.0, 0.001])
     codes = LOG_CURVES[name](reflectance)
     linear = np.array([to_linear.applyRGB([code] * 3)[1] for code in codes])
     np.testing.assert_allclose(linear / linear[1], reflectance / 0.18, rtol=2e-3)
@@ -49,10 +43,3 @@ def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
     curves = {curve for marks in LOG_TAGS.values() for curve in marks.values()}
     assert set(TAGGED_SPACES) <= {*LOG_CURVES, *TRANSFERS.values(), *curves}
     assert curves <= {*LOG_CURVES, *TAGGED_SPACES}
-
-
-@pytest.mark.parametrize("name", LOG_CURVES)
-def test_the_curve_rises_from_a_lifted_black(name):
-    codes = LOG_CURVES[name](np.linspace(-0.005, 60, 20_000))
-    assert (np.diff(codes) > 0).all()
-    assert 0.08 < LOG_CURVES[name](0.0) < 0.16

@@ -1,5 +1,3 @@
-"""The `crfnet` command: its help, `crfnet info`, and the progress bar."""
-
 import io
 import json
 import sys

@@ -1,5 +1,3 @@
-"""`crfnet calibrate`: what it writes and what it says."""
-
 import json
 import sys
 

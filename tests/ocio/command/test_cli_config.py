@@ -1,5 +1,3 @@
-"""`crfnet config` from the shell: its prints, and one line for anything that is wrong."""
-
 import json
 import shlex
 import subprocess

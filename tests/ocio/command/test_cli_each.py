@@ -1,5 +1,3 @@
-"""`crfnet estimate --each`: many photographs, one response each."""
-
 import dataclasses
 import json
 import shutil

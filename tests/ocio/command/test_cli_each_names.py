@@ -1,5 +1,3 @@
-"""`crfnet estimate --each`: which photographs are found, and their names."""
-
 import json
 import os
 import shutil

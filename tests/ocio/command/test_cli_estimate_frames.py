@@ -1,5 +1,3 @@
-"""`crfnet estimate --frames`: a response from some frames of a sequence or of a movie."""
-
 import json
 import shutil
 
@@ -65,7 +63,6 @@ def test_the_config_knows_all_frames_of_a_sequence_but_no_other_shots(estimated,
 
 
 def test_frames_of_a_movie_are_chosen(estimated, tmp_path):
-    pytest.importorskip("av", reason="needs PyAV: the extra video")
     movie = write_movie(tmp_path / "clip.mp4", 24, size=(320, 240), options={"g": "1"})
     found = estimated(movie, "--frames", "10-12")
     assert set(found) <= {f"clip.mp4 frame {number}" for number in (10, 11, 12)}

@@ -1,5 +1,3 @@
-"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate; oiiotool gives the same."""
-
 import json
 
 import numpy as np
@@ -60,17 +58,6 @@ def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     assert np.abs(read_image(tmp_path / "a.exr") - read_image(tmp_path / "b.exr")).max() < 1e-4
     document = json.loads(crfnet("info", forward, "--json").out)
     assert (document["direction"], document["converts"]) == ("forward", ["irradiance", "brightness"])
-
-
-def test_linearize_equals_the_plate_of_estimate(linear, look):
-    np.testing.assert_array_equal(linear, read_image(look / "plate_linear.exr"))
-
-
-@pytest.mark.parametrize("suffix", ["spi1d", "cube", "clf"])
-def test_oiiotool_with_the_lut(linear, look, plate, oiiotool, tolerance, tmp_path, suffix):
-    out = tmp_path / "out.exr"
-    oiiotool(plate, "--ociofiletransform", look / f"plate.{suffix}", "-d", "float", "-o", out)
-    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
 
 
 @pytest.mark.parametrize(

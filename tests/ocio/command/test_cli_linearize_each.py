@@ -1,5 +1,3 @@
-"""`crfnet linearize --each`: many photographs as linear EXR."""
-
 import json
 import os
 import shutil

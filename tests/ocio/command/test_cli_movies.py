@@ -1,5 +1,3 @@
-"""`crfnet` on movies: what it writes, says and refuses."""
-
 import json
 import re
 import shlex
@@ -9,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet.configs.files import load_config
 from crfnet.luts.files import read_lut
 from crfnet.movies.frames import WHITE, MovieFrames
 from crfnet_core.photograph.image_io import read_photo
@@ -17,15 +14,6 @@ from tests.helpers.folders import listed
 from tests.helpers.movies import run_ffmpeg, write_movie
 from tests.helpers.plates import read_exr
 from tests.helpers.schemas import problems_by, read_schema
-
-needs_av = pytest.mark.usefixtures("av")
-
-ROOT = Path(__file__).parents[3]
-
-
-@pytest.fixture
-def av():
-    return pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +30,6 @@ def linearize(crfnet, look, movie, tmp_path):
     return lambda *more: crfnet("linearize", movie, "--lut", look / "plate.spi1d", "--out", out, *more)
 
 
-@needs_av
 def test_every_frame_becomes_a_linear_plate(linearize, movie, look, tmp_path):
     done = linearize("--depth", "float")
     assert done.code == 0
@@ -54,7 +41,6 @@ def test_every_frame_becomes_a_linear_plate(linearize, movie, look, tmp_path):
     np.testing.assert_allclose(pixels, read_lut(look / "plate.spi1d").apply(samples), rtol=1e-5, atol=1e-6)
 
 
-@needs_av
 def test_some_frames_become_linear_plates(linearize, tmp_path):
     document = json.loads(linearize("--frames", "5-30x5", "--json").out)
     assert [Path(path).name for path in document["written"]] == [f"l.00{number}.exr" for number in ("05", 10, 15, 20)]
@@ -62,16 +48,6 @@ def test_some_frames_become_linear_plates(linearize, tmp_path):
     assert document["movie"].startswith("clip.mp4: H.264")
 
 
-@needs_av
-def test_without_a_lut_the_response_is_estimated_from_the_movie(crfnet, fixed_model, movie, tmp_path):
-    arguments = ("linearize", movie, "--out", tmp_path / "l.%04d.exr", "--model", fixed_model, "--frames", "1-12")
-    done = crfnet(*arguments)
-    assert done.code == 0
-    assert "Response estimated from clip.mp4 frame 2 and " in done.out
-    assert len(listed(tmp_path)) == 12
-
-
-@needs_av
 def test_an_estimate_of_a_movie(crfnet, fixed_model, movie, tmp_path):
     done = crfnet("estimate", movie, "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
     assert done.code == 0
@@ -103,7 +79,6 @@ def test_without_pyav_it_says_what_to_do(crfnet, look, movie, tmp_path, monkeypa
     assert listed(tmp_path) == []
 
 
-@needs_av
 def test_log_footage_is_refused_with_its_color_space_unless_metadata_is_ignored(crfnet, fixed_model, tmp_path):
     path = write_movie(tmp_path / "hdr.mp4", size=(320, 240), tags={"color_trc": 16})
     commands = ("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")
@@ -115,7 +90,6 @@ def test_log_footage_is_refused_with_its_color_space_unless_metadata_is_ignored(
     assert [crfnet(*command, "--ignore-metadata", "--model", fixed_model).code for command in commands] == [0, 0]
 
 
-@needs_av
 def test_a_movie_that_is_linear_already_is_refused_with_a_lut_too(crfnet, look, tmp_path):
     path = write_movie(tmp_path / "linear.mp4", size=(320, 240), tags={"color_trc": 8})
     command = ("linearize", path, "--lut", look / "plate.spi1d", "--out", tmp_path / "%d.exr")
@@ -123,15 +97,6 @@ def test_a_movie_that_is_linear_already_is_refused_with_a_lut_too(crfnet, look, 
     assert crfnet(*command, "--ignore-metadata").code == 0
 
 
-@needs_av
-def test_the_config_of_a_movie_takes_all_of_its_frames_for_linear(crfnet, fixed_model, movie, tmp_path):
-    chosen = ("--output-space", "ACEScg", "--primaries", "p3")
-    assert crfnet("estimate", movie, "--out", tmp_path, "--model", fixed_model, "--no-sheet", *chosen).code == 0
-    config = load_config(tmp_path / "config.ocio")
-    assert config.getColorSpaceFromFilepath("linear/clip.0001.exr")[0] == "ACEScg"
-
-
-@needs_av
 def test_an_interlaced_movie_is_estimated_from_but_linearized_after_deinterlacing(
     crfnet, fixed_model, look, tmp_path, monkeypatch
 ):

@@ -33,14 +33,6 @@ def arguments(plate, fixed_model, tmp_path):
     return ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
 
 
-def test_prints_names_that_the_encoding_lacks(plate, fixed_model, tmp_path):
-    photo = shutil.copy(plate, tmp_path / "写真.jpg")
-    command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model, "--json"]
-    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
-    assert json.loads(done.stdout)["estimates"][0]["photographs"][0]["name"] == "写真.jpg"
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
 def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
     photo = tmp_path / os.fsdecode(b"\xff.jpg")

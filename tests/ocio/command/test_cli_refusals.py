@@ -1,5 +1,3 @@
-"""The command refuses bad input on one line, and leaves everything as it was."""
-
 import shlex
 import shutil
 
@@ -53,27 +51,20 @@ BAD = [
     ("file_exists", "estimate plate.jpg --out dangling"),
     ("each_option_alone", "estimate plate.jpg --workers 2"),
     ("usage", "estimate plate.jpg --depth double"),
-    ("usage", "estimate plate.jpg --nonsense"),
     ("usage", "estimate plate.jpg --out ''"),
-    ("usage", "estimate"),
     ("no_such_plate", "linearize none.jpg --lut good.spi1d"),
     ("no_such_plate", "linearize loop.jpg --lut good.spi1d"),
     ("no_such_frames", "linearize none.%04d.jpg --lut good.spi1d"),
     ("folder_without_sequence", "linearize . --lut good.spi1d"),
     ("lut_unreadable", "linearize plate.jpg --lut none.spi1d"),
     ("lut_not_increasing", "linearize plate.jpg --lut bad.spi1d"),
-    ("lut_suffix", "linearize plate.jpg --lut plate.jpg"),
     ("frames_of_each", "linearize plate.jpg --each --frames 1-2"),
     ("lut_unreadable", "linearize plate.jpg --each --lut none.spi1d"),
     ("several_plates", "linearize plate.jpg more.jpg"),
-    ("single_file", "linearize plate.jpg --lut good.spi1d --frames 1-2"),
-    ("not_exr", "linearize plate.jpg --lut good.spi1d --out ../out/plate.png"),
     ("pattern_for_file", "linearize plate.jpg --lut good.spi1d --out ../out/a.%04d.exr"),
     ("not_a_folder", "linearize plate.jpg --lut good.spi1d --out file/a.exr"),
     ("target_is_plate", "linearize linear.exr --lut good.spi1d --out linear.exr --overwrite"),
-    ("lut_not_increasing", "info bad.spi1d"),
     ("lut_suffix", "info plate.jpg"),
-    ("lut_unreadable", "info none"),
     ("usage", ""),
     ("usage", "nonsense"),
 ]

@@ -1,5 +1,3 @@
-"""The files of an estimate, read back."""
-
 import functools
 import json
 from dataclasses import asdict

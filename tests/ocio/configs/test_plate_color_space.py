@@ -1,5 +1,3 @@
-"""A plate's color space as data, and added to any config."""
-
 import copy
 
 import numpy as np
@@ -9,9 +7,8 @@ import pytest
 from crfnet.configs.files import write_config
 from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_spaces
 from crfnet.configs.portable import portable_config
-from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError
-from crfnet_core.colorimetry import AP0, DISPLAY_P3, REC709, conversion_matrix
+from crfnet_core.colorimetry import DISPLAY_P3
 from tests.helpers.configs import LUT, SPACE, converted, loaded
 from tests.helpers.refusals import refused
 
@@ -96,6 +93,3 @@ class TestPrimaries:
         pixels = np.random.default_rng(0).uniform(-0.1, 2, (500, 3)).astype(np.float32)
         expected = converted(OCIO.Config.CreateFromBuiltinConfig("studio-config-latest"), name, target, pixels)
         np.testing.assert_allclose(converted(portable_config([]), name, target, pixels), expected, atol=1e-5)
-
-    def test_the_matrix_of_the_configs_is_ours(self):
-        np.testing.assert_allclose(conversion_matrix(REC709, AP0), REC709_TO_AP0, atol=1e-11)

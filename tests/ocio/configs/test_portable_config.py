@@ -1,5 +1,3 @@
-"""The small config for every host: its roles, spaces, displays and file rules."""
-
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest

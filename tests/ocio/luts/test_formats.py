@@ -1,5 +1,3 @@
-"""The text of each format that is written."""
-
 import PyOpenColorIO as OCIO
 
 from crfnet.luts.files import WRITERS, write_lut

@@ -1,5 +1,3 @@
-"""Every LUT format: round trips, independent readers, locales."""
-
 from functools import partial
 
 import colour

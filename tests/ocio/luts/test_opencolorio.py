@@ -76,7 +76,6 @@ def test_what_opencolorio_reads_is_read_alike(tmp_path, name, text, expected):
     np.testing.assert_allclose(lut.apply(pixels), judged, atol=3e-5)
 
 
-TWICE = value_range(0, 2).replace("</Range>", "<minInValue>-1</minInValue></Range>")
 MATRIX = '<Matrix inBitDepth="32f" outBitDepth="32f"><Array dim="3 3">1 0 0 0 2 0 0 0 1</Array></Matrix>'
 
 

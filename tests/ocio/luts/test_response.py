@@ -1,5 +1,3 @@
-"""A response from the LUT of its inverse, and from a LUT file of either direction."""
-
 import numpy as np
 import pytest
 

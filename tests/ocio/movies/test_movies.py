@@ -1,5 +1,3 @@
-"""Frames of movies: all of them, in order, upright; and movies that are refused in one line."""
-
 from threading import Event
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Which files are movies, which stream is the film, and the frames from which a response is estimated."""
-
 import os
 from itertools import permutations
 

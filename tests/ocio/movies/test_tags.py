@@ -1,5 +1,3 @@
-"""Metadata of movies: camera, encoding, Dolby Vision, and texts that are not UTF-8."""
-
 import struct
 from fractions import Fraction
 
@@ -12,8 +10,6 @@ from crfnet_core.colorimetry import REC2020
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.movies import write_movie
 from tests.helpers.refusals import refused
-
-pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 
 def with_box(path, box):

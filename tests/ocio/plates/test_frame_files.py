@@ -1,5 +1,3 @@
-"""Read one frame: encoded EXR files, and everything else as a photograph."""
-
 import struct
 from pathlib import Path
 

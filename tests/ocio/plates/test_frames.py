@@ -1,5 +1,3 @@
-"""Frame sequences: patterns, specifications, gaps and samples."""
-
 import sys
 
 import numpy as np
@@ -34,10 +32,6 @@ def names(sequence):
 )
 def test_a_pattern_names_the_file_of_a_frame(pattern, number, name):
     assert FramePattern.parse(pattern).path(number).name == name
-
-
-def test_a_pattern_keeps_the_folder(tmp_path):
-    assert FramePattern.parse(tmp_path / "shot_####" / "a.##.png").path(5) == tmp_path / "shot_####" / "a.05.png"
 
 
 @pytest.mark.parametrize("name", ["plate.png", "plate.%s.png", "plate.%4d.png", "100%.png", "a[1].png", "$FF.png"])

@@ -1,5 +1,3 @@
-"""linearize_plates on sequences: which frames are written, and how an interrupted run goes on."""
-
 import shutil
 import signal
 import subprocess

@@ -1,5 +1,3 @@
-"""Jobs in threads, with bounded memory."""
-
 import threading
 from contextlib import closing
 from pathlib import Path

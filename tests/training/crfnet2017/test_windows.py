@@ -6,7 +6,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics.windows import filled_bins
-from training.crfnet2017.windows import augmented, draw_windows, filled, render, scene_pixels
+from training.crfnet2017.windows import augmented, draw_windows, render, scene_pixels
 from training.data.scenes import Scene
 from training.synthesis.camera import apply_response
 
@@ -58,12 +58,6 @@ def test_light_is_rendered_as_the_simulated_camera_does(scenes):
         codes = np.rint(apply_response(light[row].numpy() * factor, scenes.curves[curve].numpy()) * 255)
         assert np.abs(found[row] - codes).max() <= 1
         assert np.mean(found[row] != codes) < 1e-2
-
-
-def test_codes_are_counted_once_in_each_window():
-    codes = torch.zeros(2, 3, 5, 5, dtype=torch.uint8)
-    codes[1, 0, 0, :3] = torch.tensor([7, 255, 7], dtype=torch.uint8)
-    assert filled(codes).tolist() == [1, 3]
 
 
 def test_the_windows_of_a_seed_are_the_same(scenes):

@@ -36,14 +36,6 @@ def test_kinds_have_their_own_centers_and_spread(bodies):
     assert 0.003 < drawn["phone"].std() < 0.04
 
 
-def test_draws_rise_from_0_to_1_and_depend_on_the_seed_alone(bodies):
-    found = InCameraResponses.from_bodies(bodies)
-    drawn = found.draw("camera", 50, np.random.default_rng(2))
-    assert (np.diff(drawn, axis=1) >= 0).all()
-    np.testing.assert_allclose(drawn[:, [0, -1]], [[0, 1]] * 50, atol=1e-9)
-    np.testing.assert_array_equal(drawn, found.draw("camera", 50, np.random.default_rng(2)))
-
-
 def test_a_body_counts_once_however_many_stacks_it_has(bodies):
     many = [*bodies, body("x", "camera", *[0.6] * 20)]
     one = [*bodies, body("x", "camera", 0.6)]

@@ -1,5 +1,3 @@
-"""P4 on made-up folders of real photographs."""
-
 import csv
 import json
 import shutil

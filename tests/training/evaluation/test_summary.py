@@ -1,5 +1,3 @@
-"""Means, intervals, comparisons, reliability, correlations."""
-
 import numpy as np
 import pytest
 
@@ -28,14 +26,6 @@ def cases(**estimators):
 
 def errors(estimation, linearization, shape):
     return {"E_est": estimation, "E_lin": linearization, "shape": shape}
-
-
-def test_the_first_sample_is_the_plain_figure(rng):
-    values = rng.uniform(0, 3, 60)
-    resampling = Resampling.from_labels(*crossed(6, 10))
-    assert resampling.mean(values).value == pytest.approx(values.mean())
-    assert resampling.quantile(values, 0.5).value == np.sort(values)[29]
-    assert resampling.quantile(values, 0.9).value == np.sort(values)[53]
 
 
 def test_the_interval_is_that_of_scenes_and_curves_together(rng):

@@ -1,5 +1,3 @@
-"""Rows on disk, and the columns of a row."""
-
 import numpy as np
 import pytest
 

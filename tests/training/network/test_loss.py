@@ -1,12 +1,10 @@
-"""The loss beside the core's evidence and posterior, and beside a computation by hand in numpy."""
-
 import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.posterior import UNUSUAL, Evidence, Posterior, Prior
-from training.network.loss import ERROR_WEIGHT, WINDOW_WEIGHT, EvidenceLoss, log_likelihoods
+from training.network.loss import ERROR_WEIGHT, WINDOW_WEIGHT, EvidenceLoss
 
 
 @pytest.fixture(scope="module")
@@ -21,14 +19,6 @@ def drawn(count, seed=0):
     rng = np.random.default_rng(seed)
     parts = (rng.normal(0, 2, (count, 5)), np.tril(rng.normal(0, 1, (count, 5, 5))), rng.normal(-2, 2, (count, 3)))
     return [Evidence(*row) for row in zip(*parts, strict=True)], tuple(map(torch.from_numpy, parts))
-
-
-def test_log_likelihoods_are_those_of_the_core(bank, competitors):
-    evidences, tensors = drawn(4)
-    weights, families = competitors
-    found = log_likelihoods(tensors, weights[None], families[None])
-    expected = np.stack([evidence.log_likelihoods(bank) for evidence in evidences])
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
 def by_hand(evidence, bank, weights, family):
@@ -69,15 +59,6 @@ def test_windows_that_are_not_present_are_no_part_of_the_loss(competitors):
     assert float(found) == pytest.approx(
         float(loss.of_each(of_photographs, weights, families).mean() + WINDOW_WEIGHT * single.mean())
     )
-
-
-def test_evidence_that_says_nothing_costs_nothing_but_the_error_of_the_mean(competitors):
-    """Then the truth is as likely as each of the responses that it competes with."""
-    nothing = (torch.zeros(1, 5), torch.zeros(1, 5, 5), torch.zeros(1, 3))
-    weights, families = (part.float() if part.is_floating_point() else part for part in competitors)
-    loss = EvidenceLoss(weights, families)
-    found = loss.of_each(nothing, weights[:1], torch.tensor([1]))
-    assert float(found) == pytest.approx(np.log(11 / 10), abs=1e-5)
 
 
 def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):

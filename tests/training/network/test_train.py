@@ -1,5 +1,5 @@
 import json
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -88,16 +88,6 @@ def test_held_out_curves_can_be_left_out(shards, tmp_path):
     settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]
     assert settings["photographs"] == sum(n % 3 != CurveSet.HELD_OUT for n in range(256)) * 2 == 342
     assert settings["training"]["without_held_out"]
-
-
-def test_photographs_of_all_shards_are_read_in_order(shards):
-    photographs = read_shards(shards, "train")
-    files = [np.load(shards / f"train_{number:04d}.npz") for number in range(2)]
-    for field in fields(photographs):
-        expected = np.concatenate([file[field.name] for file in files])
-        found = getattr(photographs, field.name).numpy()
-        assert found.dtype == expected.dtype
-        np.testing.assert_array_equal(found, expected)
 
 
 def test_a_run_starts_from_the_weights_of_another(shards, tmp_path):

@@ -18,11 +18,6 @@ def mosaic_of(planes):
     return mosaic
 
 
-def test_a_sensor_without_steps_records_the_light(planes):
-    for recorded, plane in zip(Sensor().record(planes, np.random.default_rng(0)), planes, strict=True):
-        np.testing.assert_allclose(recorded, plane, rtol=1e-5)
-
-
 @pytest.mark.parametrize("side", [60, 61])
 @pytest.mark.parametrize("method", list(Demosaicing))
 def test_demosaicing_keeps_what_was_measured_and_finds_smooth_light_again(planes, method, side):
