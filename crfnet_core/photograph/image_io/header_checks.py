@@ -74,15 +74,16 @@ def check_dpx_lines(path: Path, header: Any) -> None:
 
 
 def attribute_value(header: Any, attribute: Any) -> Any:
-    """Return the value of an attribute; its own `value` crashes Blender 4.5 if it is an empty text."""
+    """Return the value of an attribute: before OpenImageIO 3.2, its `value` fails on texts empty or not in UTF-8."""
     if not attribute.name.isprintable():  # names that are not UTF-8 cannot be asked for
         return ""
-    is_text = str(attribute.type) == "string"
-    return header.get_string_attribute(attribute.name) if is_text else attribute.value
+    if str(attribute.type) != "string":
+        return attribute.value
+    return header.get_bytes_attribute(attribute.name).decode(errors="surrogateescape")
 
 
 def with_plain_texts(header: Any) -> Any:
-    """Return a header whose texts are printable: OpenImageIO hands bytes that are not UTF-8 on as lone surrogates."""
+    """Return a header whose texts are printable."""
     plain = oiio.ImageSpec(header)
     for attribute in header.extra_attribs:
         value = attribute_value(header, attribute)
