@@ -1,4 +1,4 @@
-"""BMP, Targa and JPEG 2000: the estimator reads them itself, with the OpenImageIO of Blender."""
+"""BMP, JPEG 2000 and odd JPEG: the estimator reads them itself, with the OpenImageIO of Blender."""
 
 import numpy as np
 import pytest
@@ -19,6 +19,15 @@ def test_their_code_values_are_exact(addon, tmp_path, codes, plate_file, suffix)
     estimate(image, "BAKE", depth="float")
     expected = curve_of(image).inverse(codes / 255)
     assert np.abs(read_image(tmp_path / "other_linear.exr") - expected).max() < 1e-6
+
+
+def test_names_that_are_not_utf8_are_read(addon, tmp_path, plate_file):
+    path = tmp_path / "a.jpg"
+    write_image(path, read_image(plate_file, kind="uint8"), Make="Voigtl_nder")
+    path.write_bytes(path.read_bytes().replace(b"l_n", b"l\xe4n"))
+    image = load(path)
+    estimate(image)
+    assert image.camera_response.is_stored
 
 
 def save_jpeg_2000(source, target):

@@ -22,8 +22,11 @@ def names():
     return [image.name for image in bpy.data.images]
 
 
-def test_the_linear_plate_is_shown_and_kept_for_the_next_time(image, plate_file, codes, estimate, in_editor):
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_the_linear_plate_is_shown_and_kept_for_the_next_time(image, plate_file, codes, estimate, in_editor, is_packed):
     before = names()
+    if is_packed:
+        image.pack()
     expected = estimate(plate_file).curve.inverse(codes / 255)
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image

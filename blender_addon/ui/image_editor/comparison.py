@@ -100,8 +100,7 @@ def end_all() -> None:
     for space in _image_editors():
         if space.image is not None and COMPARED_PLATE in space.image:
             space.image = compared_plate(space.image)
-    for image in [image for image in bpy.data.images if COMPARED_PLATE in image]:
-        bpy.data.images.remove(image)
+    bpy.data.batch_remove([image for image in bpy.data.images if COMPARED_PLATE in image])
 
 
 def is_frame_shown() -> bool:
@@ -165,9 +164,11 @@ def update_frame(user: bpy.types.ImageUser) -> None:
 
 
 def _key(plate: bpy.types.Image, stops: float) -> str:
-    """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
+    """Return a text that differs between linear plates; an empty one for frames, and for painted pixels."""
     details = (stored_estimate.fingerprint(plate), stops, alpha_mode(plate), stored_estimate.primaries(plate))
-    return f"{state} {details}" if (state := file_state(plate)) and plate.source == "FILE" else ""
+    packed = plate.packed_file
+    state = hash(packed.data) if packed else file_state(plate)
+    return f"{state} {details}" if state and plate.source == "FILE" else ""
 
 
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
@@ -179,9 +180,8 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     """
     frame_files, encoding_check = lazy_import.load(".work.frame_files"), lazy_import.load(".work.encoding_check")
     plate = plate_of(image, is_only_read=True)
-    is_encoded = encoding_check.holds_encoded_values(
-        plate, running_config(), is_forced=image.camera_response_settings.force
-    )
+    is_forced = image.camera_response_settings.force
+    is_encoded = encoding_check.holds_encoded_values(plate, running_config(), is_forced=is_forced)
     with frame_files.frame_reader(plate) as read:
         shown = Path(bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library))
         is_frame = image.source == "SEQUENCE"

@@ -87,8 +87,8 @@ def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
 
 
 def text_attribute(header: Any, name: str) -> str:
-    """Return a text in a header; empty where it is absent."""
-    return _decoded(partial(header.get_string_attribute, name))
+    """Return a text in a header, bytes that are not UTF-8 as lone surrogates; empty where it is absent."""
+    return str(header.get_bytes_attribute(name).decode(errors="surrogateescape"))
 
 
 def _decoded(read: Callable[[], Any]) -> str:
