@@ -88,6 +88,8 @@ def _samples(array: Any, name: str) -> NDArray[Any]:
         raise PhotoError("damaged", path=name, kind=array.format, problem=problem) from None
     except (TypeError, ValueError):
         raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
+    if np.ma.is_masked(array):
+        raise PhotoError("array_sample_type", path=name, kind="masked values")
     if values.dtype.kind == "f" or (values.dtype.kind == "u" and values.dtype.itemsize <= 2):
         return values
     raise PhotoError("array_sample_type", path=name, kind=values.dtype)

@@ -5,6 +5,8 @@ from collections.abc import Iterable, Sequence
 
 import PyOpenColorIO as OCIO
 
+from ..plates.frame_pattern import literal
+
 #: The family of every plate's color space, which sets its rules apart from others.
 FAMILY = "Camera Response"
 
@@ -32,8 +34,7 @@ FRAME_NUMBER = re.compile(r"\.-?\d{2,}$")
 def plate_pattern(name: str) -> str:
     """Return the pattern of a plate's file name: a frame number at the end stands for any, as in shot.#.jpg."""
     stem, dot, suffix = name.rpartition(".")
-    stem = stem.replace("#", "?")
-    return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
+    return FRAME_NUMBER.sub(".#", literal(stem)) + dot + literal(suffix)
 
 
 def linear_patterns(stem: str, names: Sequence[str] = (), plates: str = "") -> tuple[str, ...]:
@@ -57,9 +58,9 @@ def is_counter_name(name: str) -> bool:
 def rule_regex(patterns: Iterable[str]) -> str:
     """Return the regular expression of file names, in a syntax that every host shares.
 
-    In the patterns, `*` stands for any characters, `?` for any character and `#` for a number of any length, also below
-    0 behind a dot; none of them matches a separator of folders. A pattern holds for full names, in any folder, in upper
-    and lower case.
+    In the patterns, `*` stands for any characters, `?` for any character, `#` for a number of any length, also below 0
+    behind a dot, and `[#]` for the character itself; none of them matches a separator of folders. A pattern holds for
+    full names, in any folder, in upper and lower case.
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
@@ -121,13 +122,14 @@ def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
 
 def _linear_pattern(name: str) -> str:
     """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
-    return re.sub(r"\.-?\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
+    return re.sub(r"\.-?\d{2,}(?=_linear\.exr$)", ".#", literal(name))
 
 
 def _pattern_regex(pattern: str) -> str:
     """Return the regular expression of one pattern."""
     wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", "\\": r"[/\\]"}
-    regex = "".join(wildcards.get(letter) or _letter_regex(letter) for letter in pattern)
+    parts = re.findall(r"\[[#*?\\]\]|.", pattern, re.DOTALL)  # [#] is the character itself
+    regex = "".join(wildcards.get(part) or _letter_regex(part.strip("[]") or part) for part in parts)
     return regex.replace(r"\.[0-9]+", r"\.-?[0-9]+")
 
 
@@ -140,4 +142,4 @@ def _letter_regex(letter: str) -> str:
         return f"[{letter.lower()}{letter.upper()}]"
     if letter.lower() != letter.upper():
         return f"({'|'.join(dict.fromkeys((letter, letter.lower(), letter.upper())))})"
-    return "\\" + letter if letter in ".^$+(){}|[]" else letter
+    return "\\" + letter if letter in ".^$+(){}|[]*?\\" else letter

@@ -130,6 +130,8 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
     record = records.get(task.place)
     if task.is_done(record):
         return record
+    if record and not record.error and record.options != task.options:
+        raise PlateError("other_options", path=task.batch.records.path, photo=task.photo)
     names = (task.folder.as_posix(), task.stem)
     is_owned = any((other.folder, other.stem) == names for other in records.values() if other is not record)
     if is_owned or (record is None and len(there) < len(task.targets)):

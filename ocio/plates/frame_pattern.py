@@ -43,8 +43,8 @@ class FramePattern:
 
     @property
     def rule(self) -> str:
-        """The names of the files in a file rule, where `#` is any number and `?` any character: see `rule_regex`."""
-        return "#".join(re.sub(r"[#*?\\]", "?", part) for part in (self.prefix, self.suffix))
+        """The names of the files in a file rule, where `#` is any number and `[#]` a character: see `rule_regex`."""
+        return "#".join(map(literal, (self.prefix, self.suffix)))
 
     def path(self, number: int) -> Path:
         """Return the file of a frame."""
@@ -70,3 +70,8 @@ def _width(mark: str) -> int:
     if mark[0] in "%$":
         return int(mark.strip("%d$F") or 1)
     return 4 if mark == "#" else len(mark)
+
+
+def literal(name: str) -> str:
+    """Return a name as a part of the pattern of a file rule, in which its characters stand for themselves."""
+    return re.sub(r"[#*?\\]", r"[\g<0>]", name)

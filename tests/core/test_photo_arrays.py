@@ -127,7 +127,10 @@ def test_an_image_of_pillow_with_damaged_exif_is_as_stored_and_one_that_is_cut_s
 #: Code -> arrays that are refused with it, and the order of their channels.
 REFUSED_ARRAYS = {
     "array_is_none": [(None, None)],
-    "array_sample_type": [(Path("plate.jpg"), None), ([[1, 2], [3]], None), (CODES.astype(np.int64), "RGB")],
+    "array_sample_type": [
+        *((Path("plate.jpg"), None), ([[1, 2], [3]], None), (CODES.astype(np.int64), "RGB")),
+        (np.ma.masked_greater(EXACT, 0.9), "RGB"),
+    ],
     "array_without_order": [(CODES, None)],
     "array_unknown_order": [(CODES, "GBR"), (CODES, 5)],
     "array_other_order": [(CODES, "RGBA"), (CODES[..., 0], "RGB")],

@@ -61,7 +61,9 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
 
 
 def check_dpx_lines(path: Path, header: Any) -> None:
-    """Refuse DPX whose lines end at whole words of 32 bits and whose header does not say so: they would be sheared."""
+    """Refuse DPX that would be sheared: lines end at whole words of 32 bits and the header does not say so, or lie."""
+    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
+        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="lines from top to bottom")
     with path.open("rb") as file:
         head = file.read(8)
         stored = file.seek(0, os.SEEK_END) - int.from_bytes(head[4:], "big" if head.startswith(b"SDPX") else "little")

@@ -113,6 +113,15 @@ def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
         read_codes(tmp_path / "a.bmp")
 
 
+def test_dpx_with_lines_from_top_to_bottom_is_refused(tmp_path):
+    path = write_image(tmp_path / "a.dpx", np.zeros((16, 24, 3), np.uint8))
+    content = bytearray(path.read_bytes())
+    content[768:770] = (5).to_bytes(2, "big" if content.startswith(b"SDPX") else "little")
+    path.write_bytes(content)
+    with refused(PhotoError, "coding_not_read"):
+        read_codes(path)
+
+
 def test_dpx_with_padded_lines_that_its_header_does_not_name_is_refused(tmp_path):
     """FFmpeg writes them, and OpenImageIO shears the picture."""
     codes = np.random.default_rng(0).integers(0, 256, (6, 5, 3), np.uint8)

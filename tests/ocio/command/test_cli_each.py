@@ -13,7 +13,7 @@ import pytest
 from crfnet.cli.arguments.parts import NOT_TRUSTED
 from crfnet.defaults import ESTIMATES
 from crfnet.errors import PlateError
-from crfnet.pipeline import each, workers
+from crfnet.pipeline import batch, each, workers
 from crfnet.pipeline.records import PhotographRecord, RecordFile
 from tests.helpers.folders import listed, tree
 from tests.helpers.footage import log_picture
@@ -107,6 +107,15 @@ def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
     assert ([run.returncode for run in runs], errors) == ([0, 0], ["", ""])
     assert [record["error"] for record in records_in(tmp_path / "out")] == [""] * 3
     assert all(f"name: CRF {stem}\n" in (tmp_path / "out" / "config.ocio").read_text() for stem in "ab")
+
+
+def test_a_run_of_other_options_that_begins_at_the_same_time_replaces_nothing(estimate, photographs, out, monkeypatch):
+    assert estimate(photographs, *QUICK).code == 0
+    before = without_records(tree(out))
+    monkeypatch.setattr(batch, "_check_earlier", lambda *_: None)  # the other run had no record then
+    done = estimate(photographs, *QUICK, "--exposure", "1")
+    assert (done.refusal, done.out.count("with other options")) == ("photographs_failed", 3)
+    assert without_records(tree(out)) == before
 
 
 def test_strict_ends_with_3_if_any_is_not_to_be_trusted(estimate, photographs):
