@@ -77,9 +77,8 @@ def attribute_value(header: Any, attribute: Any) -> Any:
     """Return the value of an attribute: before OpenImageIO 3.2, its `value` fails on texts empty or not in UTF-8."""
     if not attribute.name.isprintable():  # names that are not UTF-8 cannot be asked for
         return ""
-    if str(attribute.type) != "string":
-        return attribute.value
-    return header.get_bytes_attribute(attribute.name).decode(errors="surrogateescape")
+    is_text = str(attribute.type) == "string"
+    return header.get_bytes_attribute(attribute.name).decode(errors="surrogateescape") if is_text else attribute.value
 
 
 def with_plain_texts(header: Any) -> Any:
