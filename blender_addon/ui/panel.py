@@ -142,7 +142,7 @@ def _next_step(context: bpy.types.Context, datablock: plates.Datablock) -> str:
             return f"Start Blender with OCIO={exported_config(datablock)}"
     every = bpy.data.images if isinstance(datablock, bpy.types.Image) else bpy.data.movieclips
     baked = next((each.name for each in every if each.get(plates.BAKED_FROM) == datablock.name), "")
-    choose = ": choose it in the node" if context.space_data.type == "NODE_EDITOR" else ""
+    choose = ": choose it in a new node" if context.space_data.type == "NODE_EDITOR" else ""
     return f'The linear plate is "{baked}"{choose}.' if baked else ""
 
 

@@ -22,8 +22,7 @@ def test_their_code_values_are_exact(addon, tmp_path, codes, plate_file, suffix)
 
 
 def test_names_that_are_not_utf8_are_read(addon, tmp_path, plate_file):
-    path = tmp_path / "a.jpg"
-    write_image(path, read_image(plate_file, kind="uint8"), Make="Voigtl_nder")
+    path = write_image(tmp_path / "a.jpg", read_image(plate_file, kind="uint8"), Make="Voigtl_nder")
     path.write_bytes(path.read_bytes().replace(b"l_n", b"l\xe4n"))
     image = load(path)
     estimate(image)

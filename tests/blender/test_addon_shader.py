@@ -84,7 +84,7 @@ def test_it_goes_between_the_texture_and_what_follows_and_gives_the_light_of_eve
     assert node.inputs["Exposure"].default_value == group_node().inputs["Exposure"].default_value == -1
     image.camera_response_settings.apply = "BAKE"
     drawn = shader.show(image, lambda: apply(image, "BAKE"))
-    assert 'The linear plate is "plate_linear.exr": choose it in the node.' in words(drawn).replace(". exr", ".exr")
+    assert 'The linear plate is "plate_linear.exr": choose it in a new node.' in words(drawn).replace(". exr", ".exr")
 
 
 @pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED"])

@@ -64,7 +64,7 @@ class Picture:
 
 
 class Screen:
-    """A running Xvfb of a size in pixels; use it in a `with` statement, or call `close`."""
+    """A running Xvfb of a size in pixels, until `close`."""
 
     def __init__(self, width: int, height: int) -> None:
         self.width, self.height = width, height
@@ -82,12 +82,6 @@ class Screen:
             message = (self._memory / "log").read_text(errors="replace")
             self.close()
             raise RuntimeError(f"Xvfb does not start: {message}")
-
-    def __enter__(self) -> Screen:
-        return self
-
-    def __exit__(self, *_raised: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """End Xvfb."""
