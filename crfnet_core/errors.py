@@ -103,12 +103,13 @@ class CameraError(CRFNetError):
 
 
 def check_kinds(**arguments: tuple[object, Any]) -> None:
-    """Raise CRFNetError for an argument that is not of its kind, or a text that cannot be the name of a file."""
+    """Raise CRFNetError for an argument that is not of its kind, or a path that cannot be the name of a file."""
     for name, (value, kind) in arguments.items():
         if not isinstance(value, kind):
             needed = getattr(kind, "__name__", kind)
             raise CRFNetError("argument_kind", name=name, found=type(value).__name__, needed=needed)
-        if isinstance(value, str | Path) and not _is_file_name(str(value)):
+        is_path = isinstance(Path(), kind) and isinstance(value, str | Path)
+        if is_path and not _is_file_name(str(value)):
             raise CRFNetError("argument_kind", name=name, found="text that no file's name can be", needed="file's name")
 
 

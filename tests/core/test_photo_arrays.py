@@ -153,6 +153,7 @@ def test_a_bit_depth_that_the_array_does_not_have_and_arguments_of_another_kind_
     for choice in ({"name": 5}, {"metadata": "Canon"}, {"make": 5}):
         with refused(CRFNetError, "argument_kind", name=next(iter(choice))):
             FileMetadata(**choice) if "make" in choice else Photo.from_array(CODES, color_order="RGB", **choice)
+    assert FileMetadata(make="a\0\ud800").has_camera  # texts that are no paths may hold anything
     assert code_of(CODES.astype(np.uint16) * 5, color_order="RGB", bit_depth=10) == "array_above_bit_depth"
     for bits in (10, 4, 7.5, "8", True):
         assert code_of(CODES, color_order="RGB", bit_depth=bits) == "array_bit_depth"
