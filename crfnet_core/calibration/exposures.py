@@ -11,7 +11,7 @@ import numpy as np
 
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.header_colors import header_attribute
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, is_number
 
 #: Stops that the exposures of a stack have to span.
 LEAST_RANGE = 2.0
@@ -105,4 +105,4 @@ def _snapped(stops: Float64Array) -> Float64Array | None:
 def _positive(header: Any, name: str) -> float | None:
     """Return a positive number in a header."""
     value = header_attribute(header, name)
-    return float(value) if isinstance(value, int | float) and 0 < value < math.inf else None
+    return float(value) if is_number(value, least=0) and value else None

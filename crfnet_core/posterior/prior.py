@@ -8,6 +8,7 @@ from typing import Self
 from crfnet_core.errors import PriorError, check_kinds
 from crfnet_core.files import read_json
 from crfnet_core.posterior.families import Family
+from crfnet_core.types import is_number
 
 #: The packaged priors, and the one that is used unless another is asked for.
 PRIORS = Path(__file__).parents[1] / "data" / "priors"
@@ -59,7 +60,7 @@ class Prior:
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
             raise PriorError("bad_prior_families", path=path, families=", ".join(Family))
         numbers = [*shares.values(), evidence, lookalikes, plain]
-        if not all(type(number) in (int, float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-3]):
+        if not all(is_number(number, least=0, most=1) for number in numbers) or not any(numbers[:-3]):
             raise PriorError("bad_prior_values", path=path)
         if lookalikes == 1:
             raise PriorError("bad_lookalikes", path=path)
