@@ -127,10 +127,9 @@ def _linear_pattern(name: str) -> str:
 
 def _pattern_regex(pattern: str) -> str:
     """Return the regular expression of one pattern."""
-    wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", "\\": r"[/\\]"}
-    parts = re.findall(r"\[[#*?\\]\]|.", pattern, re.DOTALL)  # [#] is the character itself
-    regex = "".join(wildcards.get(part) or _letter_regex(part.strip("[]") or part) for part in parts)
-    return regex.replace(r"\.[0-9]+", r"\.-?[0-9]+")
+    wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", ".#": r"\.-?[0-9]+", "\\": r"[/\\]"}
+    parts = re.findall(r"\[[#*?\\]\]|\.#|.", pattern, re.DOTALL)  # [#] is the character itself
+    return "".join(wildcards.get(part) or _letter_regex(part.strip("[]") or part) for part in parts)
 
 
 def _letter_regex(letter: str) -> str:

@@ -79,9 +79,9 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     facts = cast(Any, opened.profile)
     space = facts.xcolor_space.strip()
     transfer = profile_transfer(facts.profile_description or "")
-    transfer = transfer or (_encoding(opened, _MODES[space]) if space in _MODES else "")
     if space not in _MODES:
         return ColorTags(transfer=transfer, source=OTHER_COLORS)
+    transfer = transfer or _encoding(opened, _MODES[space])
     if space != "RGB":
         return ColorTags(transfer=transfer, source=SOURCE) if transfer else ColorTags()
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in profile
