@@ -1,7 +1,7 @@
 r"""Write docs/PAPER.md: each number of the CRF-net paper beside ours.
 
     python -m training.evaluation --data DATA --out OUT --model photograph-statistics-2.4 crfnet2017 \
-        --protocol p0 paper p4 --photographs 402 --stressed 40
+        --protocol p0 paper p4 --photographs 402
     python -m training.evaluation.paper_page --data DATA --out OUT --page docs/PAPER.md
 
 The second command reads OUT/report.json and the table beside it, and draws PAPER-curves.png and PAPER-stress.png beside
