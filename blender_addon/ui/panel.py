@@ -100,14 +100,15 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
         text, icon = "Apply Again", "FILE_REFRESH"
     button = layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon)
     button.anyway = not is_trusted
+    place = _place(context, datablock) if has_been else ""
     if has_been:
         draw_text(layout, "Applied with these settings.", icon="CHECKMARK")
-        draw_text(layout, _next_step(context, datablock), icon="BLANK1")
+        draw_text(layout, _next_step(context, datablock, place), icon="BLANK1")
     else:
         draw_text(layout, _waiting(context.scene, datablock), icon="INFO")
     _draw_settings(layout, context, datablock)
     if has_been and datablock.camera_response_settings.apply != "EXPORT":
-        draw_view(layout, context.scene, datablock, is_composited=bool(_place(context, datablock)))
+        draw_view(layout, context.scene, datablock, is_composited=bool(place))
 
 
 def _draw_modes(layout: bpy.types.UILayout, datablock: plates.Datablock) -> None:
@@ -133,11 +134,11 @@ def _waiting(scene: bpy.types.Scene, datablock: plates.Datablock) -> str:
     return f"The nodes of this scene have exposure {' and '.join(sorted(exposures))} until you apply."
 
 
-def _next_step(context: bpy.types.Context, datablock: plates.Datablock) -> str:
-    """Return where the result of what was applied is, or what it is for."""
+def _next_step(context: bpy.types.Context, datablock: plates.Datablock, place: str) -> str:
+    """Return where the result of what was applied is (`place`, of nodes), or what it is for."""
     match datablock.camera_response_settings.apply:
         case "NODES":
-            return _place(context, datablock)
+            return place
         case "EXPORT":
             return f"Start Blender with OCIO={exported_config(datablock)}"
     every = bpy.data.images if isinstance(datablock, bpy.types.Image) else bpy.data.movieclips
