@@ -5,16 +5,18 @@ Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, 
 """
 
 import io
-import re
-from collections.abc import Callable
+import struct
+from functools import cache
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
 from crfnet_core.colorimetry import D50, PHOTOGRAPHIC, Primaries, adaptation, chromaticity_of
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags, profile_transfer
-from crfnet_core.types import Float64Array
+from crfnet_core.response.log_curves import LOG_CURVES, reflectance_of
+from crfnet_core.types import BoolArray, Float64Array
 
 
 def _pq_stops(codes: Float64Array) -> Float64Array:
@@ -41,29 +43,32 @@ SAME_COLORANTS = 0.002
 #: the sum of the colorants of a profile that is not damaged.
 PCS_WHITE, SAME_WHITE = np.array([0.9642, 1.0, 0.8249]), 0.02
 
-#: Codes of a gray ramp, and the least range of its L*; a damaged profile may make it flat.
-_RAMP, LEAST_LIGHTNESS = np.arange(8, 256, 8, dtype=np.uint8), 30
+#: The codes of a gray ramp, and the least range of its L*; a damaged profile may make it flat.
+_RAMP, LEAST_LIGHTNESS = np.arange(1, 256, dtype=np.uint8), 30
 
 #: Largest difference in L* between the ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
 SAME_LIGHTNESS = 1.5
 
 #: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped; and the least
 #: number of codes there.
-_COMPARED, LEAST_COMPARED = (8, 98.5), 9
+_COMPARED, LEAST_COMPARED = (8, 98.5), 70
 
-#: Encoding -> the curve of its light, in stops; the powers of it that occur, as a display may add one; and the largest
-#: difference in stops. Log curves are like PQ, but for their exponent. sRGB and powers differ from all by 0.33.
-_ENCODINGS: dict[str, tuple[Callable[[Float64Array], Float64Array], tuple[float, float], float]] = {
-    "PQ": (_pq_stops, (0.988, 1.012), 0.035),
-    "log": (_pq_stops, (0.9, 1.1), 0.08),
-    "HLG": (_hlg_stops, (0.9, 1.3), 0.08),
-}
+#: Largest difference in stops from a published curve, of any exposure: rounding makes 0.035, sRGB and powers up to 3
+#: differ from all by 0.4; and the powers of HLG that occur, as a display may add one.
+SAME_STOPS, HLG_POWERS = 0.04, (0.9, 1.3)
+
+#: A log curve that is not known: half the code is darker by more stops than by a gamma of 3.4, and the lower quarter of
+#: codes has at most 1.25 times as many of them as the upper one: 1 of logarithms, 1.4 of powers.
+LOG_STOPS, LOG_STRAIGHT = 3.4, 1.25
+
+#: Largest range, in stops, of X and Z against Y along the ramp: gammas of 2.2, 2.2 and 2.4 make 0.5.
+MOST_COLORED = 0.35
 
 #: Color space of a profile -> Pillow's mode of its pictures.
 _MODES = {"RGB": "RGB", "GRAY": "L"}
 
-#: The element `cicp`: its type, four zeros, and the code points. Pillow does not hand it out.
-_CICP = re.compile(rb"cicp\0{4}(....)", re.DOTALL)
+#: Encodings by which no response shows, though they are not published.
+NEGATIVE, UNEQUAL = "a negative", "three channels of different curves"
 
 
 def read_icc(profile: bytes) -> ColorTags:
@@ -75,47 +80,82 @@ def read_icc(profile: bytes) -> ColorTags:
 
 
 def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
-    """Return the tags of a profile."""
-    facts = cast(Any, opened.profile)
-    space = facts.xcolor_space.strip()
-    transfer = profile_transfer(facts.profile_description or "")
+    """Return the tags of a profile. Its curve outweighs its name, unless tables may show it as another display does."""
+    facts, elements = cast(Any, opened.profile), _elements(profile)
+    space, named = facts.xcolor_space.strip(), profile_transfer(facts.profile_description or "")
     if space not in _MODES:
-        return ColorTags(transfer=transfer, source=OTHER_COLORS)
-    transfer = transfer or _encoding(opened, _MODES[space])
-    if space != "RGB":
-        return ColorTags(transfer=transfer, source=SOURCE) if transfer else ColorTags()
-    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in profile
-    element = _CICP.search(profile)
-    codes = cicp_tags(element[1]) if element else ColorTags()
+        return ColorTags(None, named, OTHER_COLORS, OTHER_COLORS if named else "")
+    codes = cicp_tags(elements.get(b"cicp", b"")[8:])
+    has_tables = any(name.startswith((b"A2B", b"D2B")) for name in elements)
+    shown = codes.transfer if codes.transfer_source else None
+    if shown is None and not (has_tables and named):
+        shown = _encoding(opened, _MODES[space], named)
+    transfer = named if shown is None else shown
+    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and not has_tables
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
-    source = SOURCE if primaries else TABLES if b"A2B" in profile else DAMAGED
-    return ColorTags(primaries, codes.transfer or transfer, source)
+    source = SOURCE if primaries else TABLES if has_tables else DAMAGED
+    return ColorTags(primaries, transfer, source if space == "RGB" else "", SOURCE if transfer or shown == "" else "")
 
 
-def _encoding(profile: ImageCms.ImageCmsProfile, mode: str) -> str:
-    """Return the encoding that the lightness of a gray ramp shows, whatever the tags are; or none."""
-    ramp = Image.fromarray(_RAMP[None, :]).convert(mode)
-    intent = ImageCms.Intent.RELATIVE_COLORIMETRIC
+def _elements(profile: bytes) -> dict[bytes, bytes]:
+    """Return the elements of a profile by their names of four letters (7.3); those that its bytes hold."""
+    table = profile[132 : 132 + 12 * int.from_bytes(profile[128:132])]
+    rows = struct.iter_unpack(">4sII", table[: len(table) // 12 * 12])
+    return {name: profile[start : start + size] for name, start, size in rows}
+
+
+def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str) -> str | None:
+    """Return the encoding that a gray ramp shows, of several like it `named` if it is one; None if none can show."""
+    ramp, intent = Image.fromarray(_RAMP[None, :]).convert(mode), ImageCms.Intent.RELATIVE_COLORIMETRIC
+    lab = ImageCms.createProfile("LAB")
     try:
-        to_lab = ImageCms.buildTransform(profile, ImageCms.createProfile("LAB"), mode, "LAB", intent)
-        lightness = np.asarray(ImageCms.applyTransform(ramp, to_lab))[0, :, 0] / 2.55
+        to_lab = ImageCms.buildTransform(profile, lab, mode, "LAB", intent, ImageCms.Flags.NOOPTIMIZE)
+        colors = np.asarray(ImageCms.applyTransform(ramp, to_lab))[0]
     except (ImageCms.PyCMSError, ValueError):
-        return ""
-    if np.ptp(lightness) <= LEAST_LIGHTNESS:
-        return ""
+        return None
+    lightness = colors[:, 0] / 2.55
+    is_compared = (lightness > _COMPARED[0]) & (lightness < _COMPARED[1])
+    if np.ptp(lightness) <= LEAST_LIGHTNESS or np.count_nonzero(is_compared) < LEAST_COMPARED:
+        return None
     if lightness[0] > lightness[-1]:
-        return "a negative"
+        return NEGATIVE
+    if _is_colored(colors[is_compared]):
+        return UNEQUAL
     if _is_linear(lightness):
         return "linear"
-    is_compared = (lightness > _COMPARED[0]) & (lightness < _COMPARED[1])
-    stops, codes = 3 * np.log2((lightness[is_compared] + 16) / 116), _RAMP[is_compared] / 255
-    if len(codes) < LEAST_COMPARED:
+    return _published(3 * np.log2((lightness + 16) / 116), is_compared, named)
+
+
+def _is_colored(colors: NDArray[np.uint8]) -> bool:
+    """Return whether L*, a* and b*, each of 8 bits, change their chromaticity, as of channels of different curves."""
+    luminance, (red, yellow) = (colors[:, 0] / 2.55 + 16) / 116, colors[:, 1:].view(np.int8).T
+    others = np.maximum([luminance + red / 500, luminance - yellow / 200], 0.01)  # cube roots of X and Z
+    return bool(np.ptp(3 * np.log2(others / luminance), axis=1).max() > MOST_COLORED)
+
+
+def _published(stops: Float64Array, is_compared: BoolArray, named: str) -> str:
+    """Return the published encoding that a ramp has, "log" of several or of one that is not known; or none."""
+    near = []
+    for name, known in _published_stops().items():
+        powers = HLG_POWERS if name == "HLG" else (1, 1)
+        power = np.clip(np.polyfit(known[is_compared], stops[is_compared], 1)[0], *powers)
+        if np.ptp((stops - power * known)[is_compared]) / 2 < SAME_STOPS:
+            near.append(name)
+    top = np.flatnonzero(is_compared)[-1]
+    dark, bright = np.diff(stops[[top // 2, 3 * top // 4, top]])
+    if not near and (dark + bright < LOG_STOPS or dark > LOG_STRAIGHT * bright):
         return ""
-    for name, (curve, powers, most) in _ENCODINGS.items():
-        fit = np.polynomial.Polynomial.fit(curve(codes), stops, 1)
-        if powers[0] < fit.deriv()(0) < powers[1] and np.abs(fit(curve(codes)) - stops).max() < most:
-            return name
-    return ""
+    if named in near or not near:
+        return named or "log"
+    return near[0] if len(near) == 1 else "log"
+
+
+@cache
+def _published_stops() -> dict[str, Float64Array]:
+    """Return the light of the ramp in stops by published curves, of an exposure of their own."""
+    codes = _RAMP / 255
+    logs = {name: np.log2(reflectance_of(curve, codes)) for name, curve in LOG_CURVES.items()}
+    return {"PQ": _pq_stops(codes), "HLG": _hlg_stops(codes)} | logs
 
 
 def _is_linear(lightness: Float64Array) -> bool:

@@ -113,6 +113,12 @@ class TestPrimaries:
         assert (found["colorInteropID"], found["crfnet:primaries"]) == ("unknown", "unknown")
         assert "chromaticities" not in found
 
+    def test_a_published_encoding_is_named_apart_from_the_primaries(self, crfnet, tagged, lut_file, tmp_path):
+        icc = matrix_profile(DISPLAY_P3, cicp=b"cicp" + bytes(4) + bytes([12, 16, 0, 1]))
+        done = crfnet("linearize", tagged("a.tif", icc), "--lut", lut_file, "--out", tmp_path / "a.exr", "--json")
+        found = json.loads(done.out)
+        assert (found["primaries"]["source"], found["tagged"]) == ("ICC profile", "PQ (ICC profile)")
+
     def test_unknown_primaries_are_not_converted_to_aces(self, crfnet, tagged, lut_file, tmp_path):
         arguments = ("linearize", tagged("a.tif", TABLES), "--lut", lut_file, "--out", tmp_path / "a.exr")
         assert crfnet(*arguments, "--output-space", "ACEScg").refusal == "primaries_unknown"
