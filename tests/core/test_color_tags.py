@@ -191,11 +191,6 @@ class TestIccProfiles:
             curves = [sampled_curve(lambda codes, gamma=gamma: codes**gamma) for gamma in gammas]
             assert read_icc(matrix_profile(REC2020, curves=curves)).transfer == transfer
 
-    def test_the_profile_of_little_cms(self):
-        ImageCms = pytest.importorskip("PIL.ImageCms")
-        srgb = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
-        assert read_icc(srgb).primaries is REC709
-
 
 class TestFiles:
     @staticmethod
@@ -218,6 +213,11 @@ class TestFiles:
     def test_a_profile_of_tables_is_unknown_whatever_exif_says(self, tmp_path):
         icc = profile({"A2B0": b"mft2".ljust(52, b"\0")})
         assert self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc, Exif__ColorSpace=1)) == ColorTags(source=TABLES)
+
+    def test_a_profile_of_which_a_segment_is_absent_is_damaged(self, tmp_path):
+        path = write_image(tmp_path / "a.jpg", GRAY)
+        path.write_bytes(with_jpeg_segment(path.read_bytes(), 0xE2, b"ICC_PROFILE\0\1\2" + matrix_profile(DISPLAY_P3)))
+        assert self.tags(path) == ColorTags(source=DAMAGED)
 
     @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
     def test_exif_is_read(self, tmp_path, space, primaries):

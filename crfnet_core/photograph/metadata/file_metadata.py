@@ -57,6 +57,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = "" if _keeps_pixels(header) else _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     color = header_color_tags(header, file_format, jpeg.interop_index)
+    transfer = _text(header, "dpx:Transfer") if file_format == "DPX" else ""
     return replace(
         jpeg,
         width=header.width,
@@ -70,7 +71,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         file_format=file_format,
-        color=with_dpx_transfer(color, _text(header, "dpx:Transfer")),
+        color=with_dpx_transfer(color if color.source else replace(color, source=jpeg.color.source), transfer),
     )
 
 

@@ -33,8 +33,8 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))
     first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
-    others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
-    tags = sorted((*first, *others), key=lambda each: each.source == DAMAGED)
+    last = [_interop_tags(header), _chromaticity_tags(header, "chromaticities")] if file_format == "OpenEXR" else []
+    tags = sorted((*first, _exif_tags(header, interop_index), *last), key=lambda each: each.source == DAMAGED)
     color = next((each for each in tags if each.source), ColorTags())
     encoding = next((each for each in tags if each.transfer_source), ColorTags())
     return ColorTags(color.primaries, encoding.transfer, color.source, encoding.transfer_source)

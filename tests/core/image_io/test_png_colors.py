@@ -13,6 +13,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
+from crfnet_core.photograph.metadata.icc import DAMAGED
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.refusals import refused
@@ -74,6 +75,8 @@ def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
     assert tags(path, gAMA=linear, cHRM=chrm(REC2020)) == ColorTags(REC2020, "linear", "cHRM chunk", "gAMA chunk")
     assert tags(path, gAMA=linear, sRGB=b"\0") == ColorTags(REC709, "", "sRGB chunk", "sRGB chunk")
     assert tags(path, gAMA=linear, cICP=bytes([9, 13, 0, 1])) == ColorTags(REC2020, "", "CICP", "CICP")
+    assert tags(path, gAMA=linear, cICP=bytes([9, 2, 0, 1])) == ColorTags(REC2020, "linear", "CICP", "gAMA chunk")
+    assert tags(path, gAMA=linear, iCCP=b"a\0\0damaged") == ColorTags(None, "linear", DAMAGED, "gAMA chunk")
     assert tags(path, gAMA=struct.pack(">I", 45_455)) == ColorTags()
 
 
@@ -115,14 +118,13 @@ def test_a_profile_that_libpng_rejects_is_read(tmp_path):
     content = struct.pack(">I", len(linear) + 1) + linear[4:] + b"\0"
     chunk = b"a\0\0" + zlib.compress(content)
     assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile", "ICC profile")
-    assert tags(tmp_path / "a.png", iCCP=b"a\0\0damaged") == ColorTags()
+    assert tags(tmp_path / "a.png", iCCP=b"a\0\0damaged") == ColorTags(source=DAMAGED)
 
 
 def test_texts_named_like_attributes_change_nothing(tmp_path):
-    texts = b"".join(
-        png_chunk(b"tEXt", name + b"\0" + value)
-        for name, value in ((b"oiio:BitsPerSample", b"3"), (b"Orientation", b"6"), (b"png:palette", b"1"))
-    )
-    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=texts))
+    texts = {b"oiio:BitsPerSample": b"3", b"Orientation": b"6", b"png:palette": b"1", b"png:sRGB": b"0"}
+    texts |= {b"dpx:Transfer": b"Logarithmic", b"colorInteropID": b"lin_ap1_scene"}
+    chunks = b"".join(png_chunk(b"tEXt", name + b"\0" + value) for name, value in texts.items())
+    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=chunks))
     values = read_codes(tmp_path / "a.png")
-    assert (values.bit_depth, values.metadata.is_turned) == (8, False)
+    assert (values.bit_depth, values.metadata.is_turned, values.metadata.color) == (8, False, ColorTags())
