@@ -66,6 +66,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_of_codes": "{path}: the LUT is for code values from {low:g} to {high:g}; write it for brightness from 0 to 1",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
+    "lut_pixels": "a LUT of R, G and B needs pixels of shape (..., 3), found {shape}",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",

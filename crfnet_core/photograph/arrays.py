@@ -86,7 +86,7 @@ def _samples(array: Any, name: str) -> NDArray[Any]:
         values = np.asarray(array)
     except OSError as problem:  # an image of Pillow may be read not before now
         raise PhotoError("damaged", path=name, kind=array.format, problem=problem) from None
-    except (TypeError, ValueError):
+    except (RuntimeError, TypeError, ValueError):  # tensors of PyTorch with a gradient, or on another device
         raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
     if np.ma.is_masked(array):
         raise PhotoError("array_sample_type", path=name, kind="masked values")

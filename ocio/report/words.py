@@ -87,7 +87,7 @@ def light_lines(document: Mapping[str, Any]) -> list[str]:
     primaries, space = document["primaries"], document["output_space"]
     tagged, is_unknown = document.get("tagged"), "white" not in primaries
     return [
-        *([f"Warning: the plate is tagged {tagged}; the response is undone in it all the same."] * bool(tagged)),
+        *([f"Warning: the plate is tagged as {tagged}; the response is undone in it all the same."] * bool(tagged)),
         f"Primaries: {primaries['name']} ({primaries['source']}); the linear EXR is {space['name']}"
         f" ({space['interop_id']}).",
         *(["Warning: the colors are not converted; state the primaries with --primaries."] * is_unknown),

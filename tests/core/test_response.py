@@ -142,7 +142,16 @@ def test_code_values_are_refused(codes):
         ResponseCurve.gamma().inverse(codes)
 
 
-@pytest.mark.parametrize("argument", [None, "0.5", [1j], [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)])
+class OnDevice:
+    """A tensor of PyTorch that is not in memory, or has a gradient."""
+
+    def __array__(self, dtype=None, copy=None):
+        raise RuntimeError("call detach first")
+
+
+@pytest.mark.parametrize(
+    "argument", [None, "0.5", [1j], [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5), OnDevice()]
+)
 @pytest.mark.parametrize("function", ["forward", "inverse"])
 def test_anything_but_numbers_is_refused(argument, function):
     with refused(CurveError, "not_numbers"):

@@ -18,19 +18,6 @@ from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags, pro
 from crfnet_core.response.log_curves import LOG_CURVES, reflectance_of
 from crfnet_core.types import BoolArray, Float64Array
 
-
-def _pq_stops(codes: Float64Array) -> Float64Array:
-    """Return the light of PQ codes above 0 in stops below 10 000 cd/m2 (table 4)."""
-    power = codes ** (32 / 2523)
-    return np.asarray(np.log2((power - 3424 / 4096) / (2413 / 128 - 2392 / 128 * power)) * 8192 / 1305)
-
-
-def _hlg_stops(codes: Float64Array) -> Float64Array:
-    """Return the scene light of HLG codes above 0 in stops below white (table 5)."""
-    above = (np.exp((codes - 0.55991073) / 0.17883277) + 0.28466892) / 12
-    return np.asarray(np.log2(np.where(codes <= 0.5, codes**2 / 3, above)))
-
-
 #: The source of tags from an ICC profile; from one that works by tables, one of CMYK or Lab, and a damaged one.
 SOURCE, TABLES = "ICC profile", "ICC profile of tables"
 OTHER_COLORS, DAMAGED = "ICC profile of other colors", "damaged ICC profile"
@@ -67,9 +54,6 @@ MOST_COLORED = 0.35
 #: Color space of a profile -> Pillow's mode of its pictures.
 _MODES = {"RGB": "RGB", "GRAY": "L"}
 
-#: Encodings by which no response shows, though they are not published.
-NEGATIVE, UNEQUAL = "a negative", "three channels of different curves"
-
 
 def read_icc(profile: bytes) -> ColorTags:
     """Return the tags of an ICC profile; empty without one, or if it is of gray and of an ordinary curve."""
@@ -87,14 +71,14 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
         return ColorTags(None, named, OTHER_COLORS, OTHER_COLORS if named else "")
     codes = cicp_tags(elements.get(b"cicp", b"")[8:])
     has_tables = any(name.startswith((b"A2B", b"D2B")) for name in elements)
-    shown = codes.transfer if codes.transfer_source else None
-    if shown is None and not (has_tables and named):
-        shown = _encoding(opened, _MODES[space], named)
-    transfer = named if shown is None else shown
+    if codes.transfer_source or (has_tables and named):
+        transfer = codes.transfer or named
+    else:
+        transfer = _encoding(opened, _MODES[space], named)
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and not has_tables
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
     source = SOURCE if primaries else TABLES if has_tables else DAMAGED
-    return ColorTags(primaries, transfer, source if space == "RGB" else "", SOURCE if transfer or shown == "" else "")
+    return ColorTags(primaries, transfer, source if space == "RGB" else "", SOURCE)
 
 
 def _elements(profile: bytes) -> dict[bytes, bytes]:
@@ -104,23 +88,23 @@ def _elements(profile: bytes) -> dict[bytes, bytes]:
     return {name: profile[start : start + size] for name, start, size in rows}
 
 
-def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str) -> str | None:
-    """Return the encoding that a gray ramp shows, of several like it `named` if it is one; None if none can show."""
+def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str) -> str:
+    """Return the encoding that a gray ramp shows, or none; `named` where it is one of several, or none can show."""
     ramp, intent = Image.fromarray(_RAMP[None, :]).convert(mode), ImageCms.Intent.RELATIVE_COLORIMETRIC
     lab = ImageCms.createProfile("LAB")
     try:
         to_lab = ImageCms.buildTransform(profile, lab, mode, "LAB", intent, ImageCms.Flags.NOOPTIMIZE)
         colors = np.asarray(ImageCms.applyTransform(ramp, to_lab))[0]
     except (ImageCms.PyCMSError, ValueError):
-        return None
+        return named
     lightness = colors[:, 0] / 2.55
     is_compared = (lightness > _COMPARED[0]) & (lightness < _COMPARED[1])
     if np.ptp(lightness) <= LEAST_LIGHTNESS or np.count_nonzero(is_compared) < LEAST_COMPARED:
-        return None
+        return named
     if lightness[0] > lightness[-1]:
-        return NEGATIVE
+        return "a negative"
     if _is_colored(colors[is_compared]):
-        return UNEQUAL
+        return "three channels of different curves"
     if _is_linear(lightness):
         return "linear"
     return _published(3 * np.log2((lightness + 16) / 116), is_compared, named)
@@ -154,8 +138,11 @@ def _published(stops: Float64Array, is_compared: BoolArray, named: str) -> str:
 def _published_stops() -> dict[str, Float64Array]:
     """Return the light of the ramp in stops by published curves, of an exposure of their own."""
     codes = _RAMP / 255
+    power = codes ** (32 / 2523)  # PQ: table 4
+    pq = np.log2((power - 3424 / 4096) / (2413 / 128 - 2392 / 128 * power)) * 8192 / 1305
+    bright = (np.exp((codes - 0.55991073) / 0.17883277) + 0.28466892) / 12  # HLG: table 5
     logs = {name: np.log2(reflectance_of(curve, codes)) for name, curve in LOG_CURVES.items()}
-    return {"PQ": _pq_stops(codes), "HLG": _hlg_stops(codes)} | logs
+    return {"PQ": pq, "HLG": np.log2(np.where(codes <= 0.5, codes**2 / 3, bright))} | logs
 
 
 def _is_linear(lightness: Float64Array) -> bool:
