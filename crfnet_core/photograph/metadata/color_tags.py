@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020, Chromaticity, Primaries
+from crfnet_core.colorimetry import AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Chromaticity, Primaries
 
 #: CIE illuminant C, the white of a cinema projector (SMPTE RP 431-2), and the primaries of old television.
 C: Chromaticity = (0.310, 0.316)
@@ -24,6 +24,9 @@ PRIMARIES = {
     12: DISPLAY_P3,
     22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
 }
+
+#: Primaries that are known by their chromaticities; of equal ones the first counts.
+NAMED = (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values())
 
 #: Code points without a meaning there: reserved and unspecified.
 UNSPECIFIED = (0, 2, 3)

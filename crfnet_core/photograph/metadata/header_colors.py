@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Primaries
-from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, Primaries
+from crfnet_core.photograph.metadata.color_tags import NAMED, ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.icc import DAMAGED, read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
@@ -82,7 +82,7 @@ def _chromaticity_tags(header: Any, source: str) -> ColorTags:
     if numbers.size != 8 or not np.isfinite(numbers).all():
         return ColorTags()
     corners = numbers.reshape(4, 2)  # of red, green, blue and white
-    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values()):
+    for named in NAMED:
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
             return ColorTags(named, source=source)
     area = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)])))

@@ -6,6 +6,7 @@ Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, 
 
 import io
 import struct
+from contextlib import suppress
 from functools import cache
 from typing import Any, cast
 
@@ -13,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
-from crfnet_core.colorimetry import D50, PHOTOGRAPHIC, Primaries, adaptation, chromaticity_of
-from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags, profile_transfer
+from crfnet_core.colorimetry import D50, Primaries, adaptation, chromaticity_of
+from crfnet_core.photograph.metadata.color_tags import NAMED, ColorTags, cicp_tags, profile_transfer
 from crfnet_core.response.log_curves import LOG_CURVES, reflectance_of
 from crfnet_core.types import BoolArray, Float64Array
 
@@ -59,22 +60,23 @@ def read_icc(profile: bytes) -> ColorTags:
     """Return the tags of an ICC profile; empty without one, or if it is of gray and of an ordinary curve."""
     try:
         return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
-    except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):  # damaged names are a ValueError
+    except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):
         return ColorTags(source=DAMAGED if profile else "")
 
 
 def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
-    """Return the tags of a profile. Its curve outweighs its name, unless tables may show it as another display does."""
-    facts, elements = cast(Any, opened.profile), _elements(profile)
-    space, named = facts.xcolor_space.strip(), profile_transfer(facts.profile_description or "")
+    """Return the tags of a profile. Its curve outweighs its name, unless tables may show it as a display does."""
+    facts, elements, named = cast(Any, opened.profile), _elements(profile), ""
+    with suppress(ValueError):  # names of version 2 in other letters than ASCII
+        named = profile_transfer(facts.profile_description or "")
+    space = facts.xcolor_space.strip()
     if space not in _MODES:
         return ColorTags(None, named, OTHER_COLORS, OTHER_COLORS if named else "")
     codes = cicp_tags(elements.get(b"cicp", b"")[8:])
     has_tables = any(name.startswith((b"A2B", b"D2B")) for name in elements)
-    if codes.transfer_source or (has_tables and named):
-        transfer = codes.transfer or named
-    else:
-        transfer = _encoding(opened, _MODES[space], named)
+    transfer = codes.transfer
+    if not codes.transfer_source:
+        transfer = _encoding(opened, _MODES[space], named) or (named if has_tables else "")
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and not has_tables
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
     source = SOURCE if primaries else TABLES if has_tables else DAMAGED
@@ -160,7 +162,7 @@ def _primaries(facts: Any) -> Primaries | None:
     colorants = np.stack([column[0] for column in columns], axis=1)  # (3, 3), XYZ under D50
     if np.abs(colorants.sum(axis=1) - PCS_WHITE).max() > SAME_WHITE:
         return None
-    for named in PHOTOGRAPHIC.values():
+    for named in NAMED:
         if np.abs(colorants - adaptation(named.white, D50) @ named.to_xyz()).max() < SAME_COLORANTS:
             return named
     try:
