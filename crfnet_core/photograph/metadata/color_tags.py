@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from crfnet_core.colorimetry import AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Chromaticity, Primaries
 
@@ -71,11 +71,10 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
     return ColorTags(PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], ""), source, encoding)
 
 
-def with_dpx_transfer(color: ColorTags, name: str) -> ColorTags:
-    """Return tags with the encoding that DPX's transfer characteristic names, if without."""
-    if color.transfer or name not in DPX_TRANSFERS:
-        return color
-    return replace(color, transfer=DPX_TRANSFERS[name], transfer_source=f'dpx:Transfer "{name}"')
+def dpx_tags(name: object) -> ColorTags:
+    """Return the tags of DPX's transfer characteristic."""
+    transfer = DPX_TRANSFERS.get(str(name), "")
+    return ColorTags(transfer=transfer, transfer_source=f'dpx:Transfer "{name}"' if transfer else "")
 
 
 def profile_transfer(profile: str) -> str:
