@@ -76,7 +76,7 @@ def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     has_tables = any(name.startswith((b"A2B", b"D2B")) for name in elements)
     transfer = codes.transfer
     if not codes.transfer_source:
-        transfer = _encoding(opened, _MODES[space], named) or (named if has_tables else "")
+        transfer = _encoding(opened, _MODES[space], named, is_exact=not has_tables) or (named if has_tables else "")
     is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and not has_tables
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
     source = SOURCE if primaries else TABLES if has_tables else DAMAGED
@@ -90,8 +90,11 @@ def _elements(profile: bytes) -> dict[bytes, bytes]:
     return {name: profile[start : start + size] for name, start, size in rows}
 
 
-def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str) -> str:
-    """Return the encoding that a gray ramp shows, or none; `named` where it is one of several, or none can show."""
+def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str, *, is_exact: bool) -> str:
+    """Return the encoding that a gray ramp shows, or none; `named` where it is one of several, or none can show.
+
+    The gray of scanners and printers, whose profiles have tables and are not exact, may have any color.
+    """
     ramp, intent = Image.fromarray(_RAMP[None, :]).convert(mode), ImageCms.Intent.RELATIVE_COLORIMETRIC
     lab = ImageCms.createProfile("LAB")
     try:
@@ -105,7 +108,7 @@ def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str) -> str:
         return named
     if lightness[0] > lightness[-1]:
         return "a negative"
-    if _is_colored(colors[is_compared]):
+    if is_exact and _is_colored(colors[is_compared]):
         return "three channels of different curves"
     if _is_linear(lightness):
         return "linear"
