@@ -118,7 +118,7 @@ def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int
     bit_depth = bits if bit_depth is None else bit_depth
     if not is_number(bit_depth, int, least=LEAST_BITS, most=bits):
         raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
-    return bit_depth
+    return int(bit_depth)  # an np.uint8 cannot hold 2 ** 16
 
 
 def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:
