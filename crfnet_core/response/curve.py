@@ -122,7 +122,7 @@ class ResponseCurve(EqualByFields):
         """
         if not is_number(exponent, least=0) or not exponent:
             raise CurveError("curve_exponent", exponent=exponent)
-        return cls.from_samples(UNIFORM ** (1 / exponent))
+        return cls.from_samples(UNIFORM ** (1 / float(exponent)))
 
     @property
     def irradiance(self) -> Float64Array:
