@@ -38,6 +38,7 @@ SENTENCES: Mapping[str, str] = {
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
     "plate_is_pipe": "{path}: is a pipe or a device; give a file",
+    "encodings_differ": "{path}: is not tagged with the encoding of {first}; process each by itself",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",

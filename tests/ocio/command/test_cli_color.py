@@ -133,12 +133,15 @@ class TestPrimaries:
         each = ("--each", "--overwrite", "--no-linear", "--workers", "1")
         assert estimate(plate, other, *each).code == 0
 
-    def test_a_frame_of_other_primaries_fails(self, crfnet, tagged, lut_file, tmp_path):
-        for number, primaries in enumerate((DISPLAY_P3, DISPLAY_P3, REC709), 1):
-            tagged(f"shot.{number}.tif", matrix_profile(primaries))
+    @pytest.mark.parametrize("words", ["its primaries are Rec.709", "is not tagged with the encoding of shot.1.tif"])
+    def test_a_frame_of_other_primaries_or_another_encoding_fails(self, crfnet, tagged, lut_file, tmp_path, words):
+        pq = matrix_profile(DISPLAY_P3, cicp=b"cicp" + bytes(4) + bytes([12, 16, 0, 1]))
+        other = matrix_profile(REC709) if "Rec.709" in words else pq
+        for number, icc in enumerate((matrix_profile(DISPLAY_P3), matrix_profile(DISPLAY_P3), other), 1):
+            tagged(f"shot.{number}.tif", icc)
         out = tmp_path / "l.%d.exr"
         done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
-        assert (done.refusal, "shot.3.tif: its primaries are Rec.709" in done.err) == ("frames_failed", True)
+        assert (done.refusal, f"shot.3.tif: {words}" in done.err) == ("frames_failed", True)
         assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
 
 
