@@ -138,8 +138,8 @@ SENTENCES: Mapping[str, str] = {
     "tagged_color_space": "{path}: is encoded as {transfer}: so says its metadata ({source}). That curve is published,"
     ' so give the plate its color space, in ACES configs "{space}", and no estimate; if the tag is wrong, ignore'
     " metadata",
-    "tagged_encoding": "{path}: is encoded as {transfer}: so says its metadata ({source}). That curve is published, so"
-    " give the plate its color space, and no estimate; if the tag is wrong, ignore metadata",
+    "tagged_encoding": "{path}: is encoded as {transfer}: so says its metadata ({source}). No camera's response shows,"
+    " so give the plate its color space, and no estimate; if the tag is wrong, ignore metadata",
     "tagged_linear": "{path}: is linear already: so says its metadata ({source}). Give it a linear color space; if the"
     " tag is wrong, ignore metadata",
     # estimate: errors

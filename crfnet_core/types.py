@@ -129,6 +129,7 @@ def number_of(value: Any, kind: Any = float, *, least: float = -LARGEST, most: f
 def is_number(value: Any, kind: type = float, *, least: float = -LARGEST, most: float = LARGEST) -> bool:
     """Return whether a value is a finite number in bounds, of kind int a whole one; truth values are not numbers."""
     kinds: Any = numbers.Integral if kind is int else numbers.Real
+    value = value.item() if isinstance(value, np.generic) else value  # half floats do not compare with `LARGEST`
     return isinstance(value, kinds) and not isinstance(value, bool) and bool(least <= value <= most)
 
 

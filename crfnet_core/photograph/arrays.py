@@ -86,7 +86,7 @@ def _samples(array: Any, name: str) -> NDArray[Any]:
         values = np.asarray(array)
     except OSError as problem:  # an image of Pillow may be read not before now
         raise PhotoError("damaged", path=name, kind=array.format, problem=problem) from None
-    except (TypeError, ValueError):
+    except (RuntimeError, TypeError, ValueError):  # tensors of PyTorch with a gradient, or on another device
         raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
     if np.ma.is_masked(array):
         raise PhotoError("array_sample_type", path=name, kind="masked values")
@@ -118,7 +118,7 @@ def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int
     bit_depth = bits if bit_depth is None else bit_depth
     if not is_number(bit_depth, int, least=LEAST_BITS, most=bits):
         raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
-    return bit_depth
+    return int(bit_depth)  # an np.uint8 cannot hold 2 ** 16
 
 
 def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, overload
@@ -123,7 +122,7 @@ class ResponseCurve(EqualByFields):
         """
         if not is_number(exponent, least=0) or not exponent:
             raise CurveError("curve_exponent", exponent=exponent)
-        return cls.from_samples(UNIFORM ** (1 / exponent))
+        return cls.from_samples(UNIFORM ** (1 / float(exponent)))
 
     @property
     def irradiance(self) -> Float64Array:
@@ -199,13 +198,15 @@ class ResponseCurve(EqualByFields):
 
 def numbers_of(values: ArrayLike, error: type[CRFNetError]) -> NDArray[Any]:
     """Return values as an array; raise `error` if they are not numbers, not all there, or in rows of unequal length."""
-    kind = "rows of unequal length"
-    with suppress(ValueError):
+    try:
         numbers = np.asarray(values)
-        if numbers.dtype.kind in NUMBERS and not np.ma.is_masked(values):
-            return numbers
-        kind = "masked values" if np.ma.is_masked(values) else str(numbers.dtype)
-    raise error("not_numbers", kind=kind)
+    except ValueError:
+        raise error("not_numbers", kind="rows of unequal length") from None
+    except (RuntimeError, TypeError) as problem:  # tensors of PyTorch with a gradient, or on another device
+        raise error("not_numbers", kind=f"a {type(values).__name__}") from problem
+    if numbers.dtype.kind not in NUMBERS or np.ma.is_masked(values):
+        raise error("not_numbers", kind="masked values" if np.ma.is_masked(values) else str(numbers.dtype))
+    return numbers
 
 
 def is_codes(values: NDArray[Any]) -> bool:

@@ -150,16 +150,9 @@ def inverse_response_lut(
 ) -> Lut1D:
     """Return the inverse response g, from brightness B to irradiance E, as a LUT.
 
-    A LUT is exact where its entries lie on the codes of the plate, and linear between them. Lengths that are exact:
-
-    =============== ============================= ========================
-    codes           domain (0, 1)                 domain (-0.125, 1.125)
-    =============== ============================= ========================
-    8 bits          255 k + 1: 256, 4081, 16321   2550 k + 1: 2551, 5101
-    10 bits         1023 k + 1: 1024, 4093        10230 k + 1: 10231
-    12 bits         4095 k + 1: 4096
-    16 bits         65536 (also for 8 bits)
-    =============== ============================= ========================
+    A LUT is exact where its entries lie on the codes of the plate, and linear between them. Exact lengths are 255 k + 1
+    for 8 bits (256, 4081), 1023 k + 1 for 10 (1024, 4093), 4095 k + 1 for 12, and 65536 for 8 and 16; over a domain of
+    (-0.125, 1.125) they are 2550 k + 1 for 8 bits (2551, 5101) and 10230 k + 1 for 10.
 
     Beyond [0, 1], for super-whites and for noise below black, g continues as a line with its slope over the outermost
     8-bit code. Where a response is flat near an end, its inverse is almost vertical there; that only means that the

@@ -91,8 +91,5 @@ def is_forward(lut: AnyLut) -> bool:
     The inverses of camera responses darken: the mean of linear light is 0.5 of its range, their mean is less.
     """
     ramp = np.linspace(*lut.domain, SAMPLES)
-    means = []
-    for channel in lut.channels:
-        first, last = channel.values[0], channel.values[-1]
-        means.append((channel.apply(ramp).mean() - first) / (last - first))
+    means = [(each.apply(ramp).mean() - each.values[0]) / np.ptp(each.values) for each in lut.channels]
     return bool(np.mean(means) > MOST_MEAN)

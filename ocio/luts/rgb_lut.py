@@ -45,6 +45,8 @@ class RgbLut1D:
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
         inputs = numbers_of(pixels, LutError)
+        if inputs.shape[-1:] != (3,):
+            raise LutError("lut_pixels", shape=inputs.shape)
         return np.stack([lut.apply(inputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
 

@@ -281,7 +281,7 @@ def _color_tags(tags: ColorTags, metadata: Mapping[str, str]) -> ColorTags:
     curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
     if tags.transfer or not curves:
         return tags
-    return ColorTags(tags.primaries, curves[0], " and ".join(filter(None, (tags.source, "the maker's entry"))))
+    return replace(tags, transfer=curves[0], transfer_source="the maker's entry")
 
 
 def _turn(path: Path, frame: VideoFrame) -> Turn:

@@ -123,7 +123,7 @@ class Task:
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
-            summary=f"{self.photo.name}: linear EXR",
+            summary=f"{self.photo.name}: linear EXR" + (f", though tagged as {light.tagged}" if light.tagged else ""),
         )
         if estimate is None:
             return record

@@ -40,13 +40,15 @@ class PlateLight:
     stops: float  # added after it
     plate: PlatePrimaries
     space: LinearSpace  # of the linear values
+    tagged: str = ""  # the published encoding that a tag of the plate names, and the tag
 
     @classmethod
     def from_tags(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
         """Return the light of a plate with these tags; raises as `anchored_exposure` and `linear_space`."""
         plate = plate_primaries(tags, options.primaries)
         stops = anchored_exposure(lut, gray=options.gray, stops=options.exposure)
-        return cls(lut, stops, plate, linear_space(plate, options.output_space))
+        tagged = f"{tags.transfer} ({tags.transfer_source})" if tags.transfer and not options.is_encoded else ""
+        return cls(lut, stops, plate, linear_space(plate, options.output_space), tagged)
 
     @property
     def attributes(self) -> dict[str, str | float | tuple[float, ...]]:

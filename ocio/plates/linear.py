@@ -141,7 +141,7 @@ class _Conversion:
             write_exr(temporary, header, pixels, name=target)
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:
-        """Return a plate, which must have the primaries of the first."""
+        """Return a plate, which must have the primaries and the encoding of the first, as tagged."""
         if self.first is None:
             return load()
         if position == self.first.position:
@@ -149,6 +149,8 @@ class _Conversion:
         frame = load()
         primaries = plate_primaries(frame.color, self.options.primaries)
         check_same_primaries(path, primaries, self.first.path, self.light.plate)
+        if frame.color.transfer != self.first.frame.color.transfer and not self.options.is_encoded:
+            raise PlateError("encodings_differ", path=path, first=self.first.path.name)
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:

@@ -42,9 +42,9 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
     if choice != PRIMARIES[0]:
         raise PlateError("unknown_primaries", primaries=choice, choices=", ".join(PRIMARIES))
-    if not tags.source:
-        return PlatePrimaries(REC709, BY_CONVENTION)
-    return PlatePrimaries(tags.primaries, tags.source + (f", tagged {tags.transfer}" if tags.transfer else ""))
+    if tags.source or tags.transfer:  # by convention, only pictures for a display are in Rec.709
+        return PlatePrimaries(tags.primaries, tags.source or tags.transfer_source)
+    return PlatePrimaries(REC709, BY_CONVENTION)
 
 
 def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0]) -> PlatePrimaries:

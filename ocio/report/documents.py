@@ -45,6 +45,7 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
         "skipped": [str(path) for path in report.skipped],
         "missing": list(report.missing),
         **_light_document(report.light),
+        "tagged": report.light.tagged or None,
         "estimate": estimate.to_dict() if estimate else None,
     }
 

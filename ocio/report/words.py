@@ -85,8 +85,9 @@ def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty a
 def light_lines(document: Mapping[str, Any]) -> list[str]:
     """Return the primaries and the exposure of linear plates, from an `estimate_document` or a `plate_document`."""
     primaries, space = document["primaries"], document["output_space"]
-    is_unknown = "white" not in primaries
+    tagged, is_unknown = document.get("tagged"), "white" not in primaries
     return [
+        *([f"Warning: the plate is tagged as {tagged}; the response is undone in it all the same."] * bool(tagged)),
         f"Primaries: {primaries['name']} ({primaries['source']}); the linear EXR is {space['name']}"
         f" ({space['interop_id']}).",
         *(["Warning: the colors are not converted; state the primaries with --primaries."] * is_unknown),

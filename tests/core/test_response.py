@@ -1,3 +1,5 @@
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,6 +17,7 @@ weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 
 def test_gamma_has_the_values_of_a_power_law_and_other_numbers_of_samples_are_resampled():
     curve = ResponseCurve.gamma(2.0)
+    assert curve == ResponseCurve.gamma(np.float16(2)) == ResponseCurve.gamma(Fraction(2))
     np.testing.assert_allclose(curve.forward([0, 0.25, 0.64, 1]), [0, 0.5, 0.8, 1], atol=2e-4)
     np.testing.assert_allclose(curve.inverse([0, 0.5, 0.8, 1]), [0, 0.25, 0.64, 1], atol=3e-4)
     np.testing.assert_allclose(ResponseCurve.from_samples([0.0, 0.5, 1.0]).brightness, UNIFORM, atol=1e-12)
@@ -142,7 +145,16 @@ def test_code_values_are_refused(codes):
         ResponseCurve.gamma().inverse(codes)
 
 
-@pytest.mark.parametrize("argument", [None, "0.5", [1j], [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)])
+class OnDevice:
+    """A tensor of PyTorch that is not in memory, or has a gradient."""
+
+    def __array__(self, dtype=None, copy=None):
+        raise RuntimeError("call detach first")
+
+
+@pytest.mark.parametrize(
+    "argument", [None, "0.5", [1j], [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5), OnDevice()]
+)
 @pytest.mark.parametrize("function", ["forward", "inverse"])
 def test_anything_but_numbers_is_refused(argument, function):
     with refused(CurveError, "not_numbers"):

@@ -1,27 +1,34 @@
-"""JPEG 2000: refuse codings that OpenImageIO returns as other pixels, and find associated alpha.
+"""JPEG 2000: refuse codings that OpenImageIO returns as other pixels, and find associated alpha and tags of color.
 
-Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2).
+Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2), and 15444-2, M.11.7.3 (any ICC profile).
 """
 
 import mmap
+import struct
 from pathlib import Path
+from typing import Any
+
+import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.header_checks import damaged
+from crfnet_core.photograph.image_io.header_checks import damaged, with_segments
 from crfnet_core.photograph.image_io.iso_boxes import boxes
 
 #: Start of the codestream and of its marker SIZ; the start of the box of headers in a JP2 file.
 _SIZE_MARKER, _HEADERS = b"\xff\x4f\xff\x51", b"jp2h"
 
-#: Method of a color box that names a space by number; the spaces that are read: sRGB, gray, sYCC; CMYK.
-_BY_NUMBER, _READ_SPACES, _CMYK = 1, (16, 17, 18), 12
+#: Methods of a color box: a space by number, any ICC profile, which OpenImageIO leaves out, and CICP.
+_BY_NUMBER, _ANY_PROFILE, _BY_CICP = b"\1", b"\3", b"\5"
+
+#: The numbers of spaces that are read: sRGB, gray, sYCC; and of CMYK.
+_READ_SPACES, _CMYK = (16, 17, 18), 12
 
 #: Type of a channel by which the colors are multiplied.
 _PREMULTIPLIED = 2
 
 
-def is_premultiplied(path: Path) -> bool:
-    """Return whether colors are multiplied by alpha; raise PhotoError where OpenImageIO returns other pixels."""
+def with_jp2_boxes(header: Any, path: Path) -> Any:
+    """Return the header with its tags of color and alpha; raise PhotoError where OpenImageIO returns other pixels."""
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = content.find(_SIZE_MARKER)
         _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
@@ -34,13 +41,18 @@ def is_premultiplied(path: Path) -> bool:
         raise damaged(path, "JPEG 2000", str(problem)) from None
     if b"pclr" in headers:
         raise PhotoError("palette", path=path, kind="a JPEG 2000 file with a palette")
-    color = headers.get(b"colr", b"")
-    space = int.from_bytes(color[3:7])
-    if color[:1] == bytes([_BY_NUMBER]) and space not in _READ_SPACES:
+    method, color = headers.get(b"colr", b"")[:1], headers.get(b"colr", b"")[3:]
+    space = int.from_bytes(color[:4])
+    if method == _BY_NUMBER and space not in _READ_SPACES:
         kind = "CMYK" if space == _CMYK else f"JPEG 2000 color space {space}"
         raise PhotoError("other_colors", path=path, kind=kind)
+    complete = with_segments(header, {"icc_profile": color if method == _ANY_PROFILE else b""})
+    if method == _BY_CICP and len(color) >= 4:
+        complete.attribute("CICP", oiio.TypeDesc("int[4]"), (*struct.unpack(">2H", color[:4]), 0, 1))
     channels = headers.get(b"cdef", b"")[2:]
-    return any(int.from_bytes(channels[at + 2 : at + 4]) == _PREMULTIPLIED for at in range(0, len(channels), 6))
+    kinds = [int.from_bytes(channels[at + 2 : at + 4]) for at in range(0, len(channels), 6)]
+    complete.attribute("oiio:UnassociatedAlpha", int(_PREMULTIPLIED not in kinds))
+    return complete
 
 
 def _check_size(path: Path, size: bytes) -> None:

@@ -31,7 +31,7 @@ class JpegFile:
 
     def damage(self, problem: str) -> str:
         """Return the messages of a decoder, one a line, without those that touch no pixel."""
-        harmless = (*self.warnings, "unknown JFIF revision")
+        harmless = (*self.warnings, "unknown JFIF revision", "Unknown Adobe color transform")
         return "\n".join(line for line in problem.split("\n") if not any(each in line for each in harmless))
 
 

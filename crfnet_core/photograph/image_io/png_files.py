@@ -17,8 +17,8 @@ from crfnet_core.photograph.image_io.header_checks import with_segments
 #: Chunks that are read -> the size of their content, in bytes; a profile and EXIF have any.
 _CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4, b"eXIf": None}
 
-#: The only one of them that may stand behind the pixels, and those that override cHRM and gAMA.
-_EXIF, _BEFORE_CHROMATICITIES = b"eXIf", {b"cICP", b"iCCP", b"sRGB"}
+#: The only one of them that may stand behind the pixels; the attributes of color, of which texts may have the names.
+_EXIF, _COLORS = b"eXIf", ("CICP", "png:sRGB", "chromaticities", "png:gamma")
 
 #: The color type of IHDR of a palette; bytes of the largest profile; cHRM and gAMA hold 100 000 times their numbers.
 _PALETTE, _MOST_PROFILE, _UNIT = 3, 1 << 24, 100_000
@@ -27,14 +27,14 @@ _PALETTE, _MOST_PROFILE, _UNIT = 3, 1 << 24, 100_000
 def with_color_chunks(header: Any, path: Path) -> Any:
     """Return the header of a PNG file with EXIF, wherever it stands, and the attributes of color.
 
-    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma",
-    the last two only where no other chunk describes the encoding. Raise PhotoError for limited range.
+    They are the profile's, "png:palette", "oiio:BitsPerSample", and `_COLORS`. Raise PhotoError for limited range.
     """
     chunks, complete = _chunks(path), oiio.ImageSpec(header)
-    complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
-    profile = b""
-    with suppress(zlib.error):  # behind its name; a byte names the only method
-        profile = zlib.decompressobj().decompress(chunks.get(b"iCCP", b"").partition(b"\0")[2][1:], _MOST_PROFILE)
+    for name in ("Orientation", *_COLORS):  # texts; EXIF has a number
+        complete.erase_attribute(name, oiio.TypeString)
+    profile = chunks.get(b"iCCP", b"").partition(b"\0")[2][1:]  # behind its name; a byte names the only method
+    with suppress(zlib.error):
+        profile = zlib.decompressobj().decompress(profile, _MOST_PROFILE)
     complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": profile})
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]
     complete.attribute("png:palette", int(color_type == _PALETTE))
@@ -45,12 +45,11 @@ def with_color_chunks(header: Any, path: Path) -> Any:
         complete.attribute("CICP", oiio.TypeDesc("int[4]"), tuple(chunks[b"cICP"]))
     if b"sRGB" in chunks:
         complete.attribute("png:sRGB", chunks[b"sRGB"][0])
-    if not _BEFORE_CHROMATICITIES & set(chunks):
-        if b"cHRM" in chunks:
-            white_x, white_y, *corners = (number / _UNIT for number in struct.unpack(">8I", chunks[b"cHRM"]))
-            complete.attribute("chromaticities", oiio.TypeDesc("float[8]"), (*corners, white_x, white_y))
-        if b"gAMA" in chunks:
-            complete.attribute("png:gamma", struct.unpack(">I", chunks[b"gAMA"])[0] / _UNIT)
+    if b"cHRM" in chunks:
+        white_x, white_y, *corners = (number / _UNIT for number in struct.unpack(">8I", chunks[b"cHRM"]))
+        complete.attribute("chromaticities", oiio.TypeDesc("float[8]"), (*corners, white_x, white_y))
+    if b"gAMA" in chunks:
+        complete.attribute("png:gamma", struct.unpack(">I", chunks[b"gAMA"])[0] / _UNIT)
     return complete
 
 

@@ -26,7 +26,7 @@ from crfnet_core.photograph.image_io.header_checks import (
     with_segments,
 )
 from crfnet_core.photograph.image_io.iso_boxes import find_box
-from crfnet_core.photograph.image_io.jp2_files import is_premultiplied
+from crfnet_core.photograph.image_io.jp2_files import with_jp2_boxes
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
@@ -192,10 +192,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "WebP":  # of which OpenImageIO reads no EXIF before version 3.2
             with suppress(OSError, ValueError), Image.open(path) as picture:
                 header = with_segments(header, picture.info)
-        if kind == "JPEG XL":
-            header = _with_boxes(header, path)
         if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
-            header.attribute("oiio:UnassociatedAlpha", int(kind != "JPEG 2000" or not is_premultiplied(path)))
+            header = with_jp2_boxes(header, path) if kind == "JPEG 2000" else _with_boxes(header, path)
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
             check_dpx_lines(path, header)
@@ -220,6 +218,7 @@ def _with_boxes(header: Any, path: Path) -> Any:
         segments["xmp"] = find_box(path, b"xml ")
     header = with_segments(header, segments)
     header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
+    header.attribute("oiio:UnassociatedAlpha", 1)
     return header
 
 

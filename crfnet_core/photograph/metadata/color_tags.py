@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020, Chromaticity, Primaries
+from crfnet_core.colorimetry import AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Chromaticity, Primaries
 
 #: CIE illuminant C, the white of a cinema projector (SMPTE RP 431-2), and the primaries of old television.
 C: Chromaticity = (0.310, 0.316)
@@ -25,11 +25,11 @@ PRIMARIES = {
     22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
 }
 
+#: Primaries that are known by their chromaticities; of equal ones the first counts.
+NAMED = (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values())
+
 #: Code points without a meaning there: reserved and unspecified.
 UNSPECIFIED = (0, 2, 3)
-
-#: The beginning of the source of others that are not in `PRIMARIES`.
-CICP_PRIMARIES = "CICP primaries"
 
 #: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
 TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 17: "SMPTE ST 428-1", 18: "HLG"}
@@ -58,24 +58,23 @@ class ColorTags:
 
     primaries: Primaries | None = None  # None without a tag, or if it cannot be expressed by primaries: see `source`
     transfer: str = ""  # the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"
-    source: str = ""  # the tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none
+    source: str = ""  # the tag that names primaries, for example "ICC profile", "CICP" or "EXIF"; empty without one
+    transfer_source: str = ""  # the tag that names an encoding, also sRGB or another one of displays
 
 
 def cicp_tags(codes: Sequence[int]) -> ColorTags:
     """Return the tags of code points, at least ColourPrimaries and TransferCharacteristics; empty if unspecified."""
     if len(codes) < 2:
         return ColorTags()
-    primaries, transfer = PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], "")
-    if not primaries and codes[0] not in UNSPECIFIED:
-        return ColorTags(None, transfer, f"{CICP_PRIMARIES} {codes[0]}")
-    return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
+    source = "" if codes[0] in UNSPECIFIED else "CICP" if codes[0] in PRIMARIES else f"CICP primaries {codes[0]}"
+    encoding = "" if codes[1] in UNSPECIFIED else "CICP"
+    return ColorTags(PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], ""), source, encoding)
 
 
-def with_dpx_transfer(color: ColorTags, name: str) -> ColorTags:
-    """Return tags with the encoding that DPX's transfer characteristic names, if without."""
-    if color.transfer or name not in DPX_TRANSFERS:
-        return color
-    return replace(color, transfer=DPX_TRANSFERS[name], source=color.source or f'dpx:Transfer "{name}"')
+def dpx_tags(name: object) -> ColorTags:
+    """Return the tags of DPX's transfer characteristic."""
+    transfer = DPX_TRANSFERS.get(str(name), "")
+    return ColorTags(transfer=transfer, transfer_source=f'dpx:Transfer "{name}"' if transfer else "")
 
 
 def profile_transfer(profile: str) -> str:

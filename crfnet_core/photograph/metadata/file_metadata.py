@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, get_type_hints
 
 from crfnet_core.errors import check_kinds, one_line
-from crfnet_core.photograph.metadata.color_tags import ColorTags, with_dpx_transfer
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
 
 #: A quantization table: 64 divisors, row by row.
@@ -70,7 +70,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         file_format=file_format,
-        color=with_dpx_transfer(color, _text(header, "dpx:Transfer")),
+        color=color if color.source else replace(color, source=jpeg.color.source),
     )
 
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Primaries
-from crfnet_core.photograph.metadata.color_tags import CICP_PRIMARIES, PRIMARIES, ColorTags, cicp_tags
-from crfnet_core.photograph.metadata.icc import OTHER_COLORS, TABLES, read_icc
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, Primaries
+from crfnet_core.photograph.metadata.color_tags import NAMED, ColorTags, cicp_tags, dpx_tags
+from crfnet_core.photograph.metadata.icc import DAMAGED, read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
@@ -15,10 +15,8 @@ EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 #: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.
 DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 
-#: How sources of primaries begin that cannot be expressed by primaries, and are believed nevertheless.
-DECISIVE = (TABLES, OTHER_COLORS, CICP_PRIMARIES)
-
-#: The part of a Color Interop Forum name, such as "srgb_p3d65_scene", that stands for the primaries.
+#: The parts of a Color Interop Forum name, such as "pq_p3d65_display", that stand for the primaries and the encoding.
+_INTEROP_TRANSFERS = {"lin": "linear", "pq": "PQ", "hlg": "HLG"}
 _INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
 
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
@@ -27,19 +25,23 @@ SAME_CHROMATICITIES, LEAST_AREA, LINEAR_GAMMA = 2e-4, 0.01, 0.04
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
-    """Return the color tags of an open file; the first source that has any is believed.
+    """Return the color tags of an open file, of primaries and of encodings those of the first source that has any.
 
-    The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3). If it works by tables,
-    no other source gives primaries. OpenImageIO does not read the InteroperabilityIndex of EXIF.
+    The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3); damaged, it comes last.
+    OpenImageIO does not read the InteroperabilityIndex of EXIF.
     """
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))
-    first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
-    others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
-    tags = [each for each in (*first, *others) if each.source]
-    best = next((each for each in tags if each.primaries or each.source.startswith(DECISIVE)), (*tags, ColorTags())[0])
-    transfer = next((each.transfer for each in tags if each.transfer), "")
-    return ColorTags(best.primaries, transfer, best.source)
+    tags = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
+    tags.append(_exif_tags(header, interop_index))
+    if file_format == "OpenEXR":
+        tags += [_interop_tags(header), _chromaticity_tags(header, "chromaticities")]
+    if file_format == "DPX":
+        tags.append(dpx_tags(header_attribute(header, "dpx:Transfer")))
+    tags.sort(key=lambda each: each.source == DAMAGED)
+    color = next((each for each in tags if each.source), ColorTags())
+    encoding = next((each for each in tags if each.transfer_source), ColorTags())
+    return ColorTags(color.primaries, encoding.transfer, color.source, encoding.transfer_source)
 
 
 def header_attribute(header: Any, name: str) -> Any:
@@ -55,8 +57,8 @@ def _png_tags(header: Any) -> tuple[ColorTags, ...]:
     gamma = header_attribute(header, "png:gamma")
     is_linear = isinstance(gamma, float) and abs(gamma - 1) < LINEAR_GAMMA
     is_srgb = header_attribute(header, "png:sRGB") is not None
-    srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
-    linear = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
+    srgb = ColorTags(REC709, "", "sRGB chunk", "sRGB chunk") if is_srgb else ColorTags()
+    linear = ColorTags(transfer="linear", transfer_source="gAMA chunk") if is_linear else ColorTags()
     return srgb, _chromaticity_tags(header, "cHRM chunk"), linear
 
 
@@ -68,12 +70,14 @@ def _exif_tags(header: Any, interop_index: str) -> ColorTags:
 
 
 def _interop_tags(header: Any) -> ColorTags:
-    """Return the tags of the Color Interop Forum's name of the encoding: "lin_ap1_scene" is linear."""
-    name = header_attribute(header, "colorInteropID")
+    """Return the tags of the Color Interop Forum's name; of primaries without a name there, chromaticities tell."""
+    name, source = header_attribute(header, "colorInteropID"), "colorInteropID"
     parts = name.split("_") if isinstance(name, str) else []
-    primaries = next((_INTEROP[part] for part in parts if part in _INTEROP), None)
-    transfer = "linear" if parts[:1] == ["lin"] else ""
-    return ColorTags(primaries, transfer, "colorInteropID") if primaries or transfer else ColorTags()
+    if len(parts) < 3:
+        return ColorTags()
+    primaries = _INTEROP.get(parts[1])
+    is_named = primaries or not _chromaticity_tags(header, source).source
+    return ColorTags(primaries, _INTEROP_TRANSFERS.get(parts[0], ""), source if is_named else "", source)
 
 
 def _chromaticity_tags(header: Any, source: str) -> ColorTags:
@@ -82,7 +86,7 @@ def _chromaticity_tags(header: Any, source: str) -> ColorTags:
     if numbers.size != 8 or not np.isfinite(numbers).all():
         return ColorTags()
     corners = numbers.reshape(4, 2)  # of red, green, blue and white
-    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values()):
+    for named in NAMED:
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
             return ColorTags(named, source=source)
     area = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)])))

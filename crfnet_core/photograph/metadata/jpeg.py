@@ -9,7 +9,9 @@ from typing import Any
 from PIL import ExifTags
 from PIL.JpegImagePlugin import JpegImageFile
 
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, Table
+from crfnet_core.photograph.metadata.icc import DAMAGED
 
 #: The tables of ITU-T T.81, Annex K, which the IJG library scales by a quality. The rest of the second is 99.
 ANNEX_K_LUMA: Table = (
@@ -21,6 +23,9 @@ ANNEX_K_CHROMA: Table = (
     *(17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99, 24, 26, 56, 99, 99, 99, 99, 99, 47, 66),
     *(99,) * 38,
 )
+
+#: The beginning of a segment with a part of an ICC profile; OpenImageIO reads none of which a part is absent.
+_PROFILE = b"ICC_PROFILE\0"
 
 _GAIN_MAPS = (b"http://ns.adobe.com/hdr-gain-map/", b"urn:iso:std:iso:ts:21496:-1")
 
@@ -46,6 +51,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
         interop_index=interop_index,
+        color=ColorTags(source=DAMAGED if any(payload.startswith(_PROFILE) for _, payload in segments) else ""),
         has_gain_map=any(mark in payload for name, payload in segments for mark in _GAIN_MAPS),
     )
 

@@ -2,14 +2,13 @@
 
 levels          the darkest, the middle and the brightest samples; the codes 16 to 235 of video, stored as 0 to 255
 log_footage     how likely the levels make log footage, and which curves they may have
-log_curves      the published curves of log footage, and their names in ACES configs
 recognition     the detected kind, in words, with advice; refuses encodings with a published curve
 """
 
 from crfnet_core.photograph.recognition.levels import Levels
-from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES, LOG_CURVES
 from crfnet_core.photograph.recognition.log_footage import log_factor
 from crfnet_core.photograph.recognition.recognition import Kind, Recognition, recognize, refuse_linear, refuse_tagged
+from crfnet_core.response.log_curves import COLOR_SPACES, LOG_CURVES
 
 __all__ = ["COLOR_SPACES", "LOG_CURVES", "Kind", "Levels", "Recognition", "log_factor", "recognize", "refuse_linear"]
 __all__ += ["refuse_tagged"]

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.photograph.recognition.levels import Levels, quantile
-from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, LOG_CURVES, MOST_REFLECTANCE, LogCurve
-from crfnet_core.types import Float64Array
+from crfnet_core.response.log_curves import LOG_CURVES, LogCurve, reflectance_of
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below
 #: this brightness, so 2 of 94 may (rule of succession), and all log footage that is stored as its maker specifies.
@@ -36,7 +35,7 @@ MOST_NAMED, DARK = 4, 0.01
 class NearCurve:
     """A published curve that the levels of log footage may have."""
 
-    name: str  # as in `log_curves`
+    name: str  # as in `LOG_CURVES`
     probability: float  # by the levels alone
     expected_error: float  # of its light, in stops, over all curves that it may be: see `light_error`
 
@@ -67,7 +66,7 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
 def light_error(named: LogCurve, true: LogCurve, levels: Levels) -> float:
     """Return how far the light of a picture is off, in stops, if one curve is taken for another: a shape error."""
     codes = np.linspace(quantile(levels.histogram, DARK), levels.white, 64)
-    return float(np.log2(_reflectance(named, codes) / _reflectance(true, codes)).std())
+    return float(np.log2(reflectance_of(named, codes) / reflectance_of(true, codes)).std())
 
 
 def _log_likelihood(curve: LogCurve, levels: Levels) -> float:
@@ -76,11 +75,5 @@ def _log_likelihood(curve: LogCurve, levels: Levels) -> float:
     levels_seen = np.array([levels.middle, max(levels.black, black + NOISE)])
     below = max(0.0, black - NOISE - levels.black) / NOISE_DEVIATION
     expected = MIDDLE_REFLECTANCE, DARKEST_REFLECTANCE
-    stops = np.log2(_reflectance(curve, levels_seen) / expected) / (MIDDLE_STOPS, DARKEST_STOPS)
+    stops = np.log2(reflectance_of(curve, levels_seen) / expected) / (MIDDLE_STOPS, DARKEST_STOPS)
     return float(-below - (stops**2).sum() / 2)
-
-
-def _reflectance(curve: LogCurve, codes: Float64Array) -> Float64Array:
-    """Return the reflectances of code values."""
-    reflectance = np.geomspace(LEAST_REFLECTANCE, MOST_REFLECTANCE, 4096)
-    return np.interp(codes, curve(reflectance), reflectance)

@@ -12,8 +12,8 @@ from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition.levels import Levels, is_limited_range
-from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
+from crfnet_core.response.log_curves import COLOR_SPACES
 
 #: Probability of log footage above which it counts as recognized.
 RECOGNIZED = 0.5
@@ -74,13 +74,13 @@ def refuse_tagged(photo: Photo) -> None:
     if color.transfer:
         space = TAGGED_SPACES.get(color.transfer, "")
         code = "tagged_color_space" if space else "tagged_encoding"
-        raise PhotoError(code, path=photo.path, transfer=color.transfer, source=color.source, space=space)
+        raise PhotoError(code, path=photo.path, transfer=color.transfer, source=color.transfer_source, space=space)
 
 
 def refuse_linear(color: ColorTags, path: Path) -> None:
     """Raise PhotoError if the tags of a file say that it is linear."""
     if color.transfer == "linear":
-        raise PhotoError("tagged_linear", path=path, source=color.source)
+        raise PhotoError("tagged_linear", path=path, source=color.transfer_source)
 
 
 def _recognized(kind: Kind, reason: Notice, advice: Notice) -> Recognition:

@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from crfnet_core.colorimetry import DISPLAY_P3, REC2020
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
+from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
@@ -23,8 +25,8 @@ PALETTE = box(b"pclr", struct.pack(">HB3B", 256, 3, 7, 7, 7) + bytes(768))
 PALETTE += box(b"cmap", b"".join(struct.pack(">HBB", 0, 1, column) for column in range(3)))
 
 
-def jp2(path, codes, boxes=b"", space=16, components=None):
-    """Write JPEG 2000 with more boxes in its header, another color space and other components in its marker SIZ."""
+def jp2(path, codes, boxes=b"", color=b"\1\0\0\0\0\0\x10", components=None):
+    """Write JPEG 2000 with more boxes in its header, another color box and other components in its marker SIZ."""
     file = io.BytesIO()
     Image.fromarray(codes).save(file, "JPEG2000", no_jp2=True)
     stream = bytearray(file.getvalue())
@@ -32,7 +34,7 @@ def jp2(path, codes, boxes=b"", space=16, components=None):
         stream[42 + 3 * at : 45 + 3 * at] = bytes(values)
     height, width, channels = codes.shape
     header = box(b"ihdr", struct.pack(">IIH4B", height, width, channels, 7, 7, 0, 0))
-    header += box(b"colr", b"\1\0\0" + struct.pack(">I", space)) + boxes
+    header += box(b"colr", color) + boxes
     start = box(b"jP  ", b"\r\n\x87\n") + box(b"ftyp", b"jp2 \0\0\0\0jp2 ")
     path.write_bytes(start + box(b"jp2h", header) + box(b"jp2c", bytes(stream)))
     return path
@@ -54,7 +56,7 @@ def test_alpha_is_associated_if_the_file_says_so(tmp_path, kind, is_associated):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        *(({"space": space}, "other_colors") for space in (12, 14)),
+        *(({"color": b"\1\0\0" + struct.pack(">I", space)}, "other_colors") for space in (12, 14)),
         ({"boxes": PALETTE}, "palette"),
         ({"components": [(0x87, 1, 1)]}, "coding_not_read"),
         ({"components": [(7, 1, 1), (7, 2, 2), (7, 2, 2)]}, "coding_not_read"),
@@ -65,6 +67,21 @@ def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments
     for read in (read_codes, read_metadata):
         with refused(PhotoError, code):
             read(path)
+
+
+@pytest.mark.parametrize(
+    ("color", "expected"),
+    [
+        *(
+            (method + bytes(2) + matrix_profile(DISPLAY_P3), (DISPLAY_P3, "", "ICC profile"))
+            for method in (b"\2", b"\3")
+        ),
+        (b"\5\0\0" + struct.pack(">3HB", 9, 16, 0, 128), (REC2020, "PQ", "CICP")),
+    ],
+)
+def test_the_color_box_is_read(tmp_path, color, expected):
+    found = read_metadata(jp2(tmp_path / "a.jp2", colored_ramp(8), color=color)).color
+    assert (found.primaries, found.transfer, found.source) == expected
 
 
 @pytest.mark.parametrize("alpha", [255, 128])

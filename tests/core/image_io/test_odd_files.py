@@ -158,6 +158,9 @@ def test_a_later_jfif(tmp_path):
     path = tmp_path / "a.jpg"
     path.write_bytes(jpeg(path).replace(b"JFIF\0\1", b"JFIF\0\2", 1))
     assert read_codes(path).metadata.has_jfif
+    adobe = path.read_bytes().replace(b"JFIF\0\2", b"none\0\2", 1)  # else its number of a transform does not count
+    path.write_bytes(with_jpeg_segment(adobe, 0xEE, b"Adobe\0\x64\0\0\0\0\7"))
+    assert read_codes(path).metadata.has_adobe
 
 
 def test_names_that_are_not_utf8(tmp_path):

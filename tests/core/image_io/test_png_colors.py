@@ -13,6 +13,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
+from crfnet_core.photograph.metadata.icc import DAMAGED
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.refusals import refused
@@ -40,12 +41,12 @@ def test_named_chromaticities_are_known(tmp_path, primaries):
 @pytest.mark.parametrize(
     ("codes", "expected"),
     [
-        ((12, 13, 0, 1), ColorTags(DISPLAY_P3, "", "CICP")),
-        ((9, 16, 0, 1), ColorTags(REC2020, "PQ", "CICP")),
-        ((9, 18, 0, 1), ColorTags(REC2020, "HLG", "CICP")),
-        ((2, 2, 0, 1), ColorTags(ADOBE_RGB, "", "ICC profile")),
-        ((2, 18, 0, 1), ColorTags(ADOBE_RGB, "HLG", "ICC profile")),
-        ((10, 13, 0, 1), ColorTags(None, "", "CICP primaries 10")),
+        ((12, 13, 0, 1), ColorTags(DISPLAY_P3, "", "CICP", "CICP")),
+        ((9, 16, 0, 1), ColorTags(REC2020, "PQ", "CICP", "CICP")),
+        ((9, 18, 0, 1), ColorTags(REC2020, "HLG", "CICP", "CICP")),
+        ((2, 2, 0, 1), ColorTags(ADOBE_RGB, "", "ICC profile", "ICC profile")),
+        ((2, 18, 0, 1), ColorTags(ADOBE_RGB, "HLG", "ICC profile", "CICP")),
+        ((10, 13, 0, 1), ColorTags(None, "", "CICP primaries 10", "CICP")),
     ],
 )
 def test_codes_come_before_the_profile(tmp_path, codes, expected):
@@ -57,16 +58,25 @@ def test_chunks_are_believed_by_their_order(tmp_path):
     expected = [(DISPLAY_P3, "CICP"), (ADOBE_RGB, "ICC profile"), (REC709, "sRGB chunk"), (PROPHOTO, "cHRM chunk")]
     for index, (primaries, source) in enumerate(expected):
         remaining = dict([*chunks.items()][index:])
-        assert tags(tmp_path / "a.png", **remaining) == ColorTags(primaries, "", source)
+        encoding = "" if primaries is PROPHOTO else source
+        assert tags(tmp_path / "a.png", **remaining) == ColorTags(primaries, "", source, encoding)
+
+
+def test_an_encoding_for_displays_is_an_answer_too(tmp_path):
+    linear = matrix_profile(ADOBE_RGB, curves=[b"curv" + bytes(8)] * 3)
+    chunk = b"a\0\0" + zlib.compress(linear)
+    assert tags(tmp_path / "a.png", cICP=bytes([1, 13, 0, 1]), iCCP=chunk) == ColorTags(REC709, "", "CICP", "CICP")
 
 
 def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
     path, linear = tmp_path / "a.png", struct.pack(">I", 100_000)
     for gamma in (linear, struct.pack(">I", 99_000)):
-        assert tags(path, gAMA=gamma) == ColorTags(None, "linear", "gAMA chunk")
-    assert tags(path, gAMA=linear, cHRM=chrm(REC2020)) == ColorTags(REC2020, "linear", "cHRM chunk")
-    assert tags(path, gAMA=linear, sRGB=b"\0") == ColorTags(REC709, "", "sRGB chunk")
-    assert tags(path, gAMA=linear, cICP=bytes([9, 13, 0, 1])) == ColorTags(REC2020, "", "CICP")
+        assert tags(path, gAMA=gamma) == ColorTags(None, "linear", "", "gAMA chunk")
+    assert tags(path, gAMA=linear, cHRM=chrm(REC2020)) == ColorTags(REC2020, "linear", "cHRM chunk", "gAMA chunk")
+    assert tags(path, gAMA=linear, sRGB=b"\0") == ColorTags(REC709, "", "sRGB chunk", "sRGB chunk")
+    assert tags(path, gAMA=linear, cICP=bytes([9, 13, 0, 1])) == ColorTags(REC2020, "", "CICP", "CICP")
+    assert tags(path, gAMA=linear, cICP=bytes([9, 2, 0, 1])) == ColorTags(REC2020, "linear", "CICP", "gAMA chunk")
+    assert tags(path, gAMA=linear, iCCP=b"a\0\0damaged") == ColorTags(None, "linear", DAMAGED, "gAMA chunk")
     assert tags(path, gAMA=struct.pack(">I", 45_455)) == ColorTags()
 
 
@@ -104,18 +114,17 @@ def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
 def test_a_profile_that_libpng_rejects_is_read(tmp_path):
     """Its length is not a multiple of four."""
     curve = b"curv" + struct.pack(">II", 0, 0)
-    linear = matrix_profile(REC709, version=4, rTRC=curve, gTRC=curve, bTRC=curve)
+    linear = matrix_profile(REC709, curves=[curve] * 3)
     content = struct.pack(">I", len(linear) + 1) + linear[4:] + b"\0"
     chunk = b"a\0\0" + zlib.compress(content)
-    assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile")
-    assert tags(tmp_path / "a.png", iCCP=b"a\0\0damaged") == ColorTags()
+    assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile", "ICC profile")
+    assert tags(tmp_path / "a.png", iCCP=b"a\0\0damaged") == ColorTags(source=DAMAGED)
 
 
 def test_texts_named_like_attributes_change_nothing(tmp_path):
-    texts = b"".join(
-        png_chunk(b"tEXt", name + b"\0" + value)
-        for name, value in ((b"oiio:BitsPerSample", b"3"), (b"Orientation", b"6"), (b"png:palette", b"1"))
-    )
-    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=texts))
+    texts = {b"oiio:BitsPerSample": b"3", b"Orientation": b"6", b"png:palette": b"1", b"png:sRGB": b"0"}
+    texts |= {b"dpx:Transfer": b"Logarithmic", b"colorInteropID": b"lin_ap1_scene"}
+    chunks = b"".join(png_chunk(b"tEXt", name + b"\0" + value) for name, value in texts.items())
+    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=chunks))
     values = read_codes(tmp_path / "a.png")
-    assert (values.bit_depth, values.metadata.is_turned) == (8, False)
+    assert (values.bit_depth, values.metadata.is_turned, values.metadata.color) == (8, False, ColorTags())

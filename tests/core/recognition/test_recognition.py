@@ -180,7 +180,7 @@ def test_a_messengers_copy_is_recognized_by_its_metadata(fields, is_sent):
 )
 def test_a_tag_is_refused_with_the_color_space_to_choose(transfer, code, space):
     with refused(PhotoError, code, space=space):
-        refuse_tagged(tagged(ColorTags(transfer=transfer, source="CICP")))
+        refuse_tagged(tagged(ColorTags(transfer=transfer, transfer_source="CICP")))
 
 
 def test_photographs_without_such_a_tag_are_not_refused():

@@ -113,6 +113,12 @@ class TestPrimaries:
         assert (found["colorInteropID"], found["crfnet:primaries"]) == ("unknown", "unknown")
         assert "chromaticities" not in found
 
+    def test_a_published_encoding_is_named_apart_from_the_primaries(self, crfnet, tagged, lut_file, tmp_path):
+        icc = matrix_profile(DISPLAY_P3, cicp=b"cicp" + bytes(4) + bytes([12, 16, 0, 1]))
+        done = crfnet("linearize", tagged("a.tif", icc), "--lut", lut_file, "--out", tmp_path / "a.exr", "--json")
+        found = json.loads(done.out)
+        assert (found["primaries"]["source"], found["tagged"]) == ("ICC profile", "PQ (ICC profile)")
+
     def test_unknown_primaries_are_not_converted_to_aces(self, crfnet, tagged, lut_file, tmp_path):
         arguments = ("linearize", tagged("a.tif", TABLES), "--lut", lut_file, "--out", tmp_path / "a.exr")
         assert crfnet(*arguments, "--output-space", "ACEScg").refusal == "primaries_unknown"
@@ -127,12 +133,15 @@ class TestPrimaries:
         each = ("--each", "--overwrite", "--no-linear", "--workers", "1")
         assert estimate(plate, other, *each).code == 0
 
-    def test_a_frame_of_other_primaries_fails(self, crfnet, tagged, lut_file, tmp_path):
-        for number, primaries in enumerate((DISPLAY_P3, DISPLAY_P3, REC709), 1):
-            tagged(f"shot.{number}.tif", matrix_profile(primaries))
+    @pytest.mark.parametrize("words", ["its primaries are Rec.709", "is not tagged with the encoding of shot.1.tif"])
+    def test_a_frame_of_other_primaries_or_another_encoding_fails(self, crfnet, tagged, lut_file, tmp_path, words):
+        pq = matrix_profile(DISPLAY_P3, cicp=b"cicp" + bytes(4) + bytes([12, 16, 0, 1]))
+        other = matrix_profile(REC709) if "Rec.709" in words else pq
+        for number, icc in enumerate((matrix_profile(DISPLAY_P3), matrix_profile(DISPLAY_P3), other), 1):
+            tagged(f"shot.{number}.tif", icc)
         out = tmp_path / "l.%d.exr"
         done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
-        assert (done.refusal, "shot.3.tif: its primaries are Rec.709" in done.err) == ("frames_failed", True)
+        assert (done.refusal, f"shot.3.tif: {words}" in done.err) == ("frames_failed", True)
         assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
 
 

@@ -198,6 +198,8 @@ def test_floating_point_codes_are_refused_and_light_has_no_bound(true_response, 
     lut = inverse_response_lut(true_response, domain=(-0.125, 1.125))
     with refused(LutError, "lut_codes"):
         RgbLut1D((lut, lut, lut)).apply(np.stack([codes] * 3, axis=-1))
+    with refused(LutError, "lut_pixels"):  # gray, of which the first columns would be R, G and B
+        RgbLut1D((lut, lut, lut)).apply(np.zeros((8, 9)))
     assert np.nanmax(lut.apply_inverse(codes)) == pytest.approx(1.125)
 
 

@@ -122,9 +122,10 @@ def test_a_file_tagged_linear_is_refused(tmp_path):
 
 
 def test_an_exr_that_is_tagged_as_encoded_has_the_primaries_of_the_tag(tmp_path):
-    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="srgb_p3d65_scene")
+    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="pq_p3d65_display")
     np.testing.assert_array_equal(read_frame(path).samples, [[[0.5, 0.5, 0.5]]])
-    assert read_frame(path).color == read_color_tags(path) == ColorTags(DISPLAY_P3, source="colorInteropID")
+    expected = ColorTags(DISPLAY_P3, "PQ", "colorInteropID", "colorInteropID")
+    assert read_frame(path).color == read_color_tags(path) == expected
 
 
 def test_an_exr_with_a_damaged_header_is_refused(tmp_path):

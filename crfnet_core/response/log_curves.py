@@ -117,3 +117,9 @@ LOG_CURVES: dict[str, LogCurve] = {
         *((171.2102946929 - 95) / 0.01125 / 1023, 95 / 1023),
     ),
 }
+
+
+def reflectance_of(curve: LogCurve, codes: Float64Array) -> Float64Array:
+    """Return the reflectances of code values."""
+    reflectance = np.geomspace(LEAST_REFLECTANCE, MOST_REFLECTANCE, 4096)
+    return np.interp(codes, curve(reflectance), reflectance)
