@@ -14,8 +14,15 @@ from crfnet_core.errors import PhotoError, one_line
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *("support is not configured", "is not implemented", "not supported", "nsupported"),
-    "No support for this flavor",  # TIFF in Lab, or of JPEG with 12 bits
+    *(
+        "support is not configured",
+        "is not implemented",
+        "not supported",
+        "nsupported",
+        "could not find a format reader",
+    ),
+    *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
+    "components are supported",  # JPEG 2000 of gray and alpha
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )
 
@@ -27,6 +34,11 @@ WHITE_IS_ZERO, READ_PHOTOMETRICS = 0, (0, 1, 2, 6)
 RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, (32844, 32845)
 MASK = 4
 OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
+
+#: Where DPX has the descriptor of its first element and the packing of its samples; the descriptors of RGB, and all
+#: that are read, with those of one component and luma.
+_DPX_DESCRIPTOR, _DPX_PACKING, _DPX_RGB = 800, 804, (50, 51, 52)
+_DPX_READ = (0, 1, 2, 3, 6, *_DPX_RGB)
 
 #: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; and the beginning of EXIF in a
 #: JPEG, which other formats may or may not have.
@@ -45,6 +57,7 @@ def check_size(path: Path, width: int, height: int) -> None:
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     """Return the bits per sample, 8, 10, 12 or 16, of an encoded photograph; raise PhotoError for any other file."""
     check_size(path, header.width, header.height)
+    check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:
         raise PhotoError("volume", path=path)
     if kind == "JPEG XL" and text_attribute(header, "ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
@@ -53,27 +66,33 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     sample = str(header.format)
     if sample in ("half", "float", "double"):
         raise PhotoError("scene_linear_file", path=path, kind=f"a file of {sample} samples")
-    stored = {"uint8": 8, "uint16": 16}.get(sample, 0)
+    stored = 8 * header.format.basesize()
     bits = min(header.get_int_attribute("oiio:BitsPerSample", stored), stored)  # XMP may claim more
-    if not stored or bits < 8:
+    if sample not in ("uint8", "uint16") or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
     return bits if bits in (8, 10, 12) else 16
 
 
-def check_dpx_lines(path: Path, header: Any) -> None:
-    """Refuse DPX that would be sheared: lines end at whole words of 32 bits and the header does not say so, or lie."""
-    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
-        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="lines from top to bottom")
+def check_dpx(path: Path, header: Any) -> None:
+    """Refuse DPX of which OpenImageIO returns other pixels (SMPTE ST 268-1: the generic image header)."""
     with path.open("rb") as file:
-        head = file.read(8)
-        stored = file.seek(0, os.SEEK_END) - int.from_bytes(head[4:], "big" if head.startswith(b"SDPX") else "little")
-    line = header.scanline_bytes()
-    if (
-        line % 4
-        and stored == (line + -line % 4) * header.height
-        and not header.get_int_attribute("dpx:EndOfLinePadding")
-    ):
-        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="padded lines that its header does not name")
+        head = file.read(_DPX_PACKING + 2)
+        number = partial(int.from_bytes, byteorder="big" if head.startswith(b"SDPX") else "little")
+        stored = file.seek(0, os.SEEK_END) - number(head[4:8])
+    elements, descriptor, line = number(head[770:772]), head[_DPX_DESCRIPTOR], header.scanline_bytes()
+    is_padded = line % 4 and stored == (line + -line % 4) * header.height
+    is_filled = header.get_int_attribute("oiio:BitsPerSample") == 10 and number(head[_DPX_PACKING:]) > 0
+    problem = ""
+    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
+        problem = "lines from top to bottom"
+    elif descriptor not in _DPX_READ or (elements > 1 and descriptor not in _DPX_RGB):  # it reads the first alone
+        problem = f"{elements} elements, the first of descriptor {descriptor}"
+    elif is_filled and header.nchannels == 4 and header.width % 3:
+        problem = "lines of 10 bits and four channels that end within a word"  # its last sample is left out
+    elif is_padded and not header.get_int_attribute("dpx:EndOfLinePadding"):
+        problem = "padded lines that its header does not name"
+    if problem:
+        raise PhotoError("coding_not_read", path=path, kind="DPX", problem=problem)
 
 
 def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
@@ -84,8 +103,16 @@ def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
     """
     for attribute in header.extra_attribs:
         if (name := _decoded(partial(getattr, attribute, "name"))).isprintable():
-            value = text_attribute(header, name) if str(attribute.type) == "string" else attribute.value
-            yield name, "int" if isinstance(value, int) else attribute.type, value
+            try:
+                value = text_attribute(header, name) if str(attribute.type) == "string" else attribute.value
+            except UnicodeDecodeError:  # lists of texts
+                continue
+            yield name, "int" if isinstance(value, int) and value < 2**31 else attribute.type, value
+
+
+def channel_names(header: Any) -> tuple[str, ...]:
+    """Return the names of the channels in a header."""
+    return tuple(_decoded(partial(header.channel_name, channel)) for channel in range(header.nchannels))
 
 
 def text_attribute(header: Any, name: str) -> str:
@@ -114,7 +141,7 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
     """Return a header with EXIF, XMP and ICC profile, as OpenImageIO reads and names them in a JPEG with them."""
     complete = oiio.ImageSpec(header)
     if exif := info.get("exif"):
-        info = {**info, "exif": _EXIF_NAME + exif.removeprefix(_EXIF_NAME)}
+        info = {**info, "exif": (_EXIF_NAME + exif.removeprefix(_EXIF_NAME))[: _MOST_BYTES["exif"] - 1]}
     fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return complete
