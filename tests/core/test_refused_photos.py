@@ -51,6 +51,7 @@ HUGE = {"huge.png": png(50000, 50000), "huge.tif": tiff(50000, 50000, content=by
 FILES = [
     ("empty.jpg", b"", "photograph_is_empty"),
     ("text.jpg", b"hello\n" * 20, "not_an_image_file"),
+    ("huge.webp", b"RIFF\xff\0\0\0WEBPVP8X\x0a\0\0\0\0\0\0\0" + b"\x7f\x3e\0" * 2, "coding_not_read"),
     ("wave.webp", b"RIFF\0\0\0\0WAVEfmt ", "not_an_image_file"),
     ("cut.heic", b"\0\0\0\x18ftypheic" + bytes(100), "damaged"),
     *((f"{bits}.tif", tiff(2, 2, bits=bits, kind=3, content=bytes(48)), "scene_linear_file") for bits in (16, 32)),

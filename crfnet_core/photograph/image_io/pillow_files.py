@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
+from PIL import Image
 from PIL.AvifImagePlugin import AvifImageFile
 from PIL.BmpImagePlugin import BmpImageFile
 from PIL.WebPImagePlugin import WebPImageFile
@@ -28,7 +29,10 @@ from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeVal
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
 #: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
-_DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
+_DAMAGE = (
+    *(EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError),
+    Image.DecompressionBombError,  # of WebP nevertheless
+)
 
 #: Most pixels that are decoded for the main picture: of its tiles, and of the picture that they make.
 MOST_DECODED = 4 * MAX_PIXELS
