@@ -74,6 +74,7 @@ FILES = [
     ("long.tif", tiff(2, 2, bits=32, content=bytes(48)), "sample_type"),
     ("bilevel.tif", tiff(8, 2, samples=1, photometric=1, bits=1, content=bytes(2)), "sample_type"),
     ("exotic.tif", with_compression(tiff(2, 2, content=bytes(12)), 34926), "coding_not_read"),
+    ("order.tif", with_compression(tiff(2, 2, extra=((266, 3, 2),), content=bytes(12)), 8), "coding_not_read"),
     ("directory.tif", b"II*\0" + struct.pack("<I", 10**9) + bytes(8), "damaged"),
     ("zero.png", png(0, 0), "damaged"),
     ("lying.png", png(2000, 2000), "damaged"),

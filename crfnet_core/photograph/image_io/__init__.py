@@ -6,6 +6,7 @@ header_checks    size, depth and colors in a header; texts without control chara
 jpeg_files       JPEG: checks before decoding, and the standard image of a file with a gain map
 iso_boxes        the boxes that HEIF, JPEG 2000 and JPEG XL are made of
 heif_items       HEIF: the items in these boxes, and how often they are decoded
+dpx_files        DPX: codings that OpenImageIO misreads, and missing ends
 jp2_files        JPEG 2000: codings that OpenImageIO misreads, and associated alpha
 png_files        PNG: the chunks of color
 pillow_files     HEIC, AVIF and BMP, which OpenImageIO's wheel does not read, or not all of

@@ -28,8 +28,9 @@ RAW_SUFFIXES = (
 )
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
-#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, ExtraSamples, DNGVersion.
-_SUBFILE_TYPE, _SUB_DIRECTORIES, EXTRA_SAMPLES, _DNG_VERSION = 254, 330, 338, 50706
+#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, DNGVersion, and others.
+_SUBFILE_TYPE, _SUB_DIRECTORIES, _DNG_VERSION = 254, 330, 50706
+FILL_ORDER, EXTRA_SAMPLES = 266, 338
 
 #: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures.
 HEIC_BRANDS, AVIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx"), (b"avif", b"avis")

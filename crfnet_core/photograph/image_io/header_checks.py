@@ -1,6 +1,5 @@
 """Check the header of an image file (size, depth, colors), clean its texts, add other segments; errors of decoders."""
 
-import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -35,11 +34,6 @@ RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, 
 MASK = 4
 OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
-#: Where DPX has the descriptor of its first element and the packing of its samples; the descriptors of RGB, and all
-#: that are read, with those of one component and luma.
-_DPX_DESCRIPTOR, _DPX_PACKING, _DPX_RGB = 800, 804, (50, 51, 52)
-_DPX_READ = (0, 1, 2, 3, 6, *_DPX_RGB)
-
 #: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; and the beginning of EXIF in a
 #: JPEG, which other formats may or may not have.
 _MOST_BYTES, _EXIF_NAME = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}, b"Exif\0\0"
@@ -71,28 +65,6 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     if sample not in ("uint8", "uint16") or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
     return bits if bits in (8, 10, 12) else 16
-
-
-def check_dpx(path: Path, header: Any) -> None:
-    """Refuse DPX of which OpenImageIO returns other pixels (SMPTE ST 268-1: the generic image header)."""
-    with path.open("rb") as file:
-        head = file.read(_DPX_PACKING + 2)
-        number = partial(int.from_bytes, byteorder="big" if head.startswith(b"SDPX") else "little")
-        stored = file.seek(0, os.SEEK_END) - number(head[4:8])
-    elements, descriptor, line = number(head[770:772]), head[_DPX_DESCRIPTOR], header.scanline_bytes()
-    is_padded = line % 4 and stored == (line + -line % 4) * header.height
-    is_filled = header.get_int_attribute("oiio:BitsPerSample") == 10 and number(head[_DPX_PACKING:]) > 0
-    problem = ""
-    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
-        problem = "lines from top to bottom"
-    elif descriptor not in _DPX_READ or (elements > 1 and descriptor not in _DPX_RGB):  # it reads the first alone
-        problem = f"{elements} elements, the first of descriptor {descriptor}"
-    elif is_filled and header.nchannels == 4 and header.width % 3:
-        problem = "lines of 10 bits and four channels that end within a word"  # its last sample is left out
-    elif is_padded and not header.get_int_attribute("dpx:EndOfLinePadding"):
-        problem = "padded lines that its header does not name"
-    if problem:
-        raise PhotoError("coding_not_read", path=path, kind="DPX", problem=problem)
 
 
 def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:

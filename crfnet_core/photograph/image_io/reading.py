@@ -13,11 +13,17 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
+from crfnet_core.photograph.image_io.dpx_files import check_dpx
+from crfnet_core.photograph.image_io.file_kinds import (
+    EXTRA_SAMPLES,
+    FILL_ORDER,
+    RAW_SUFFIXES,
+    file_kind,
+    tiff_directory,
+)
 from crfnet_core.photograph.image_io.header_checks import (
     MASK,
     WHITE_IS_ZERO,
-    check_dpx,
     checked_bit_depth,
     damaged,
     oiio_message,
@@ -186,8 +192,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF":
             _seek_picture(source)
         header = with_plain_texts(source.spec())
-        if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
-            header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
+        if kind == "TIFF":
+            _check_tiff(path, header)
         if kind == "JPEG XL":
             header = _with_boxes(header, path)
         if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
@@ -205,6 +211,15 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
             yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()
+
+
+def _check_tiff(path: Path, header: Any) -> None:
+    """Refuse deflated bytes whose bits are in reverse order; make no alpha of channels whose use is not stated."""
+    directory = tiff_directory(path)
+    if directory.get(FILL_ORDER) == 2 and header.get_string_attribute("compression") == "zip":
+        raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")
+    if header.nchannels > 4 and EXTRA_SAMPLES not in directory:
+        header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
 
 
 def _with_boxes(header: Any, path: Path) -> Any:

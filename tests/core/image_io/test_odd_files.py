@@ -140,6 +140,16 @@ def test_dpx_that_openimageio_misreads_is_refused(tmp_path, orientation, element
         read_codes(path)
 
 
+@pytest.mark.parametrize("bits", [10, 12])
+@pytest.mark.parametrize("part", [0.5, 0.99])
+def test_dpx_that_is_cut_short_is_refused(tmp_path, bits, part):
+    path = write_image(tmp_path / "a.dpx", np.zeros((160, 24, 3), np.uint16), oiio__BitsPerSample=bits)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(part * len(content))])
+    with refused(PhotoError, "damaged"):
+        read_codes(path)
+
+
 def test_dpx_with_padded_lines_that_its_header_does_not_name_is_refused(tmp_path):
     """FFmpeg writes them, and OpenImageIO shears the picture."""
     codes = np.random.default_rng(0).integers(0, 256, (6, 5, 3), np.uint8)
