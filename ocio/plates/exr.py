@@ -35,9 +35,6 @@ STANDARD_NAMES = {
     **{"isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings")},
 }
 
-#: The numbers among them.
-STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
-
 #: NumPy's types of the two depths.
 SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 
@@ -65,7 +62,7 @@ def linear_header(
     for name, others in STANDARD_NAMES.items():
         found = next((value for other in others if (value := header.getattribute(other))), None)
         if found is not None:
-            standard[name] = float(np.ravel(found)[0]) if name in STANDARD_NUMBERS else str(found)
+            standard[name] = found if isinstance(found, str) else float(np.ravel(found)[0])
     for name, value in {**standard, **attributes, FORM: written_form(header)}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)

@@ -22,7 +22,7 @@ from crfnet_core.types import Float32Array
 from ..errors import PlateError
 
 #: Names of the one channel of a gray picture, and colorInteropID of encoded values, as the Color Interop Forum has it.
-GRAY, ENCODED = ("Y", "R"), re.compile(r"(srgb|g\d\d|pq|hlg)_\w+_(scene|display)")
+GRAY, ENCODED = ({"Y"}, {"R"}), re.compile(r"(srgb|g\d\d|pq|hlg)_\w+_(scene|display)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,9 +140,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     """Return the encoded values in an OpenEXR file, divided by its alpha or as stored."""
     with _opened_exr(path, is_encoded=is_encoded) as source:
         header = source.spec()
-        names = channel_names(header)
-        gray = next((name for name in GRAY if name in names), "")
-        channels = [header.channelindex(name if name in names else gray) for name in "RGB"]
+        channels = _color_channels(header)
         part, needed = source.current_subimage(), {*channels, header.alpha_channel} - {-1}  # others may be many
         planes = {channel: source.read_image(part, 0, channel, channel + 1, "float") for channel in needed}
         problem = oiio_message(source)
@@ -161,6 +159,15 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     return EncodedFrame(samples, 1, alpha[..., 0], header, header_color_tags(header, "OpenEXR"))
 
 
+def _color_channels(header: Any) -> list[int]:
+    """Return the channels of red, green and blue, or three times that of gray; none where there is neither."""
+    names = channel_names(header)
+    colors = set(names) - {"A"}
+    if colors >= set("RGB"):
+        return [names.index(name) for name in "RGB"]
+    return [names.index(min(colors))] * 3 if colors in GRAY else []
+
+
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     """Refuse an OpenEXR file that is or may be linear, is too large or deep, or holds no RGB or gray picture."""
     space = text_attribute(header, "colorInteropID")
@@ -169,14 +176,9 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() * max(header.nchannels, 4) > 4 * MAX_PIXELS:  # all are decompressed
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
-    channels = channel_names(header)
-    names = set(channels)
-    kinds = {str(header.channelformat(at)) for at, name in enumerate(channels) if name in "RGBYA"}
-    if (
-        header.deep
-        or not kinds <= {"half", "float"}
-        or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY])
-    ):
-        raise PlateError("exr_channels", path=path, channels=", ".join(channels))
+    channels = _color_channels(header)
+    kinds = {str(header.channelformat(channel)) for channel in {*channels, header.alpha_channel} - {-1}}
+    if header.deep or not channels or not kinds <= {"half", "float"}:
+        raise PlateError("exr_channels", path=path, channels=", ".join(channel_names(header)))
     if not ENCODED.fullmatch(space) and not is_encoded:
         raise PlateError("exr_untagged", path=path)

@@ -21,7 +21,8 @@ def check_dpx(path: Path, header: Any) -> None:
         stored = file.seek(0, os.SEEK_END) - number(head[4:8])
     elements, descriptor, packing, encoding = number(head[770:772]), head[800], number(head[804:806]), head[806:]
     bits, samples = header.get_int_attribute("oiio:BitsPerSample"), header.nchannels * header.width
-    line = _line_bytes(samples, bits, is_packed=packing == 0)
+    sizes = {8: samples, 10: -(-samples // 3) * 4}  # three samples of 10 bits fill a word of 32
+    line = -(-samples * bits // 32) * 4 if bits in (10, 12) and packing == 0 else sizes.get(bits, 2 * samples)
     problem = ""
     if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
         problem = "lines from top to bottom"
@@ -39,12 +40,3 @@ def check_dpx(path: Path, header: Any) -> None:
         raise PhotoError("coding_not_read", path=path, kind="DPX", problem=problem)
     if stored < line * header.height:  # which OpenImageIO before version 3.2 reads nevertheless
         raise damaged(path, "DPX", "its end is missing")
-
-
-def _line_bytes(samples: int, bits: int, *, is_packed: bool) -> int:
-    """Return the bytes of a line: samples of 10 and 12 bits fill words of 32 bits, by three or each two bytes."""
-    if bits in (10, 12) and is_packed:
-        return -(-samples * bits // 32) * 4
-    if bits == 10:
-        return -(-samples // 3) * 4
-    return samples if bits == 8 else 2 * samples

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import damaged
-from crfnet_core.photograph.image_io.iso_boxes import boxes
+from crfnet_core.photograph.image_io.iso_boxes import boxes, find_box
 
-#: Start of the codestream and of its marker SIZ; the start of the box of headers in a JP2 file.
-_SIZE_MARKER, _HEADERS = b"\xff\x4f\xff\x51", b"jp2h"
+#: Start of the codestream and of its marker SIZ.
+_SIZE_MARKER = b"\xff\x4f\xff\x51"
 
 #: Method of a color box that names a space by number; the spaces that are read: sRGB, gray, sYCC; CMYK.
 _BY_NUMBER, _READ_SPACES, _CMYK = 1, (16, 17, 18), 12
@@ -25,11 +25,8 @@ def is_premultiplied(path: Path) -> bool:
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = content.find(_SIZE_MARKER)
         _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
-        at = content.find(_HEADERS, 0, start) if start > 0 else -1
-        size = int.from_bytes(content[at - 4 : at]) if at >= 4 else 0
-        inner = content[at + 4 : at - 4 + size] if size else b""  # a bare codestream has no headers
-    try:
-        headers = dict(reversed([*boxes(inner)]))  # of several of one name the first counts
+    try:  # a bare codestream has no boxes; of several of one name the first counts
+        headers = dict(reversed([*boxes(find_box(path, b"jp2h"))]))
     except ValueError as problem:
         raise damaged(path, "JPEG 2000", str(problem)) from None
     if b"pclr" in headers:
