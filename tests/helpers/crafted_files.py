@@ -75,6 +75,12 @@ def camera_jpeg(path, **attributes):
     return path.read_bytes()
 
 
+def xmp_packet(attributes):
+    """Return XMP of one description with these attributes."""
+    start = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
+    return start + b"<rdf:Description " + attributes + b"/></rdf:RDF></x:xmpmeta>"
+
+
 def with_jpeg_segment(content, marker, payload):
     """Return a JPEG with one more segment, in front."""
     return content[:2] + bytes([0xFF, marker]) + struct.pack(">H", len(payload) + 2) + payload + content[2:]

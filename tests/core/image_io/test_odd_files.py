@@ -11,7 +11,7 @@ from crfnet.plates.exr import linear_header
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
+from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment, xmp_packet
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
@@ -166,9 +166,8 @@ def test_xmp_does_not_change_the_bits(tmp_path):
     """OpenImageIO hands properties of any namespace on under their own names."""
     whole, path = jpeg(tmp_path / "a.jpg"), tmp_path / "a.jpg"
     expected = read_codes(path).codes
-    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
-    xmp += b'<rdf:Description xmlns:oiio="oiio" oiio:BitsPerSample="10" xmlns:png="png" png:palette="1"/></rdf:RDF>'
-    path.write_bytes(with_jpeg_segment(whole, 0xE1, b"http://ns.adobe.com/xap/1.0/\0" + xmp + b"</x:xmpmeta>"))
+    xmp = xmp_packet(b'xmlns:oiio="oiio" oiio:BitsPerSample="10" xmlns:png="png" png:palette="1"')
+    path.write_bytes(with_jpeg_segment(whole, 0xE1, b"http://ns.adobe.com/xap/1.0/\0" + xmp))
     values = read_codes(path)
     assert values.bit_depth == 8
     np.testing.assert_array_equal(values.codes, expected)
