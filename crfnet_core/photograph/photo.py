@@ -140,8 +140,9 @@ class CodeValues:
         """Return decoded samples, shape (H, W, C), as three channels and the alpha that `header` names."""
         channels, alpha = samples.shape[2], header.alpha_channel
         has_alpha = 0 < alpha < channels
+        is_gray = channels < 3 or header.get_int_attribute("tiff:PhotometricInterpretation", 2) in (0, 1)
         return cls(
-            codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
+            codes=samples[..., :3] if not is_gray else np.repeat(samples[..., :1], 3, axis=2),
             alpha=samples[..., alpha] if has_alpha else None,
             bit_depth=bit_depth,
             is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),

@@ -14,15 +14,17 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import first_line, oiio_message
-from crfnet_core.photograph.image_io.header_checks import attributes_of
+from crfnet_core.photograph.image_io.header_checks import attributes_of, channel_names
+from crfnet_core.types import is_number
 
 from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
-COPIED_METADATA = (
-    *("DateTime", "Exif:ExposureBiasValue", "Exif:FocalLength", "Exif:ISOSpeedRatings", "Exif:LensModel"),
-    *("Exif:PhotographicSensitivity", "ExposureTime", "FNumber", "FramesPerSecond", "Make", "Model", "Orientation"),
-    *("PixelAspectRatio", "smpte:KeyCode", "smpte:TimeCode"),
+COPIED_TEXTS = ("DateTime", "Exif:LensModel", "Make", "Model")
+COPIED_NUMBERS = (
+    *("Exif:ExposureBiasValue", "Exif:FocalLength", "Exif:ISOSpeedRatings", "Exif:PhotographicSensitivity"),
+    *("ExposureTime", "FNumber", "FramesPerSecond", "Orientation", "PixelAspectRatio"),
+    *("smpte:KeyCode", "smpte:TimeCode"),
 )
 
 #: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
@@ -32,9 +34,6 @@ STANDARD_NAMES = {
     **{"nominalFocalLength": ("Exif:FocalLength",)},  # in millimeters
     **{"isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings")},
 }
-
-#: The numbers among them.
-STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 
 #: NumPy's types of the two depths.
 SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
@@ -49,21 +48,21 @@ ATTRIBUTE = re.compile(rb"[^\0]+\0[^\0]+\0(.{4})", re.DOTALL)
 def linear_header(
     source: Any, *, channels: int, depth: str, attributes: Mapping[str, str | float | tuple[float, ...]]
 ) -> Any:
-    """Return the header of a linear plate of 3 or 4 channels, with `COPIED_METADATA` of `source`, the encoded plate."""
+    """Return the header of a linear plate of 3 or 4 channels, with metadata of `source`, the encoded plate."""
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
         setattr(header, name, getattr(source, name))
     header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
     for name, kind, value in attributes_of(source):
-        is_impossible = name == "PixelAspectRatio" and not 1e-6 < float(value) < 1e6  # in OpenEXR; FFmpeg's DPX has 0
-        if name in COPIED_METADATA and not is_impossible:
+        is_possible = name != "PixelAspectRatio" or is_number(value, least=1e-6, most=1e6)  # FFmpeg's DPX has 0
+        if name in (COPIED_TEXTS if isinstance(value, str) else COPIED_NUMBERS) and is_possible:
             header.attribute(name, kind, one_line(value) if isinstance(value, str) else value)
     header.attribute("compression", "zips")
     standard: dict[str, str | float] = {}
     for name, others in STANDARD_NAMES.items():
         found = next((value for other in others if (value := header.getattribute(other))), None)
         if found is not None:
-            standard[name] = float(found) if name in STANDARD_NUMBERS else str(found)
+            standard[name] = found if isinstance(found, str) else float(np.ravel(found)[0])
     for name, value in {**standard, **attributes, FORM: written_form(header)}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
@@ -74,7 +73,7 @@ def linear_header(
 
 def written_form(header: Any) -> str:
     """Return the size, the channels and the coding of a file; a comp that is written over it may keep attributes."""
-    channels = " ".join(header.channelnames)
+    channels = " ".join(channel_names(header))
     return f"{header.width} x {header.height} {channels} {header.format} {header['compression']}"
 
 

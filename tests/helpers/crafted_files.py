@@ -8,27 +8,30 @@ import numpy as np
 from tests.helpers.images import write_image
 
 
-def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), content=b""):
-    """Return an uncompressed little-endian TIFF whose header may lie about its size.
+def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), content=b"", is_big=False):
+    """Return an uncompressed little-endian TIFF, or BigTIFF, whose header may lie about its size.
 
     `kind` is SampleFormat, `extra` are further tags (tag, type, value), and `content` holds the samples.
     """
+    head, count, entry = (b"II+\0\x08\0\0\0", "<Q", "<HHQQ") if is_big else (b"II*\0", "<H", "<HHII")
+    place = count if is_big else "<I"
+    begin = len(head) + struct.calcsize(place)
     tags = [
         (256, 4, width),
         (257, 4, height),
         (258, 3, bits),
         (259, 3, 1),
         (262, 3, photometric),
-        (273, 4, 8),
+        (273, 4, begin),
         (277, 3, samples),
         (278, 4, height),
         (279, 4, min(width * height * samples * bits // 8, 2**32 - 1)),
         (339, 3, kind),
         *extra,
     ]
-    directory = b"".join(struct.pack("<HHII", tag, form, 1, value) for tag, form, value in sorted(tags))
-    start = 8 + len(content)
-    return b"II*\0" + struct.pack("<I", start) + content + struct.pack("<H", len(tags)) + directory + bytes(4)
+    directory = b"".join(struct.pack(entry, tag, form, 1, value) for tag, form, value in sorted(tags))
+    start = struct.pack(place, begin + len(content))
+    return head + start + content + struct.pack(count, len(tags)) + directory + bytes(begin // 2)
 
 
 def png(width, height, rows=b"\0", *, chunks=b""):
@@ -70,6 +73,12 @@ def camera_jpeg(path, **attributes):
     content = content[:table] + bytes([3]) * 64 + content[table + 64 :]
     path.write_bytes(content[:2] + content[4 + size :])
     return path.read_bytes()
+
+
+def xmp_packet(attributes):
+    """Return XMP of one description with these attributes."""
+    start = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
+    return start + b"<rdf:Description " + attributes + b"/></rdf:RDF></x:xmpmeta>"
 
 
 def with_jpeg_segment(content, marker, payload):

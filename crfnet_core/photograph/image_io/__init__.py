@@ -6,9 +6,10 @@ header_checks    size, depth and colors in a header; texts without control chara
 jpeg_files       JPEG: checks before decoding, and the standard image of a file with a gain map
 iso_boxes        the boxes that HEIF, JPEG 2000 and JPEG XL are made of
 heif_items       HEIF: the items in these boxes, and how often they are decoded
+dpx_files        DPX: codings that OpenImageIO misreads, and missing ends
 jp2_files        JPEG 2000: codings that OpenImageIO misreads, associated alpha, tags of color
 png_files        PNG: the chunks of color
-pillow_files     HEIC, AVIF and BMP, which OpenImageIO's wheel does not read, or not all of
+pillow_files     HEIC, AVIF, BMP and WebP, which OpenImageIO's wheel does not read, or not all of
 """
 
 from crfnet_core.photograph.image_io.file_kinds import PHOTOGRAPH_SUFFIXES, RAW_SUFFIXES

@@ -1,7 +1,8 @@
 """Recognize a file's format by its first bytes, and refuse formats that hold no encoded photograph."""
 
+from functools import partial
 from pathlib import Path
-from typing import BinaryIO, Literal
+from typing import BinaryIO
 
 from crfnet_core.errors import PhotoError
 
@@ -27,8 +28,9 @@ RAW_SUFFIXES = (
 )
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
-#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, ExtraSamples, DNGVersion.
-_SUBFILE_TYPE, _SUB_DIRECTORIES, EXTRA_SAMPLES, _DNG_VERSION = 254, 330, 338, 50706
+#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, DNGVersion, and others.
+_SUBFILE_TYPE, _SUB_DIRECTORIES, _DNG_VERSION = 254, 330, 50706
+FILL_ORDER, EXTRA_SAMPLES = 266, 338
 
 #: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures.
 HEIC_BRANDS, AVIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx"), (b"avif", b"avis")
@@ -81,7 +83,7 @@ def _is_raw(path: Path, head: bytes) -> bool:
     """Return whether a file is camera raw, whatever its name: also TIFF that says so, or has larger pictures below."""
     if head.startswith(RAW_SIGNATURES) or (head[8:10] == b"CR" and head.startswith((b"II*\0", b"MM\0*"))):
         return True
-    if not head.startswith((b"II*\0", b"MM\0*")):
+    if not head.startswith(SIGNATURES["TIFF"]):
         return False
     entries = tiff_directory(path)
     is_reduced = bool(entries.get(_SUBFILE_TYPE, 0) & 1)
@@ -91,14 +93,18 @@ def _is_raw(path: Path, head: bytes) -> bool:
 def tiff_directory(path: Path) -> dict[int, int]:
     """Return tag -> value, or its place, of a TIFF's first directory; Pillow would load values of any claimed size."""
     with path.open("rb") as file:
-        head = file.read(8)
-        order: Literal["little", "big"] = "little" if head.startswith(b"II") else "big"
-        file.seek(int.from_bytes(head[4:], order))
-        content = file.read(12 * min(int.from_bytes(file.read(2), order), _MOST_ENTRIES))
+        head = file.read(16)
+        number = partial(int.from_bytes, byteorder="little" if head.startswith(b"II") else "big")
+        width = 8 if b"+" in head[2:4] else 4  # of places and values: BigTIFF has 8 bytes
+        file.seek(min(number(head[width : 2 * width]), 2**62))
+        count = number(file.read(8 if width == 8 else 2))
+        size = 4 + 2 * width  # of an entry: its tag, its type, the number of values, and the value or its place
+        content = file.read(size * min(count, _MOST_ENTRIES))
     directory = {}
-    for at in range(0, len(content) - 11, 12):
-        tag, kind = (int.from_bytes(content[begin : begin + 2], order) for begin in (at, at + 2))
-        directory[tag] = int.from_bytes(content[at + 8 : at + (10 if kind == 3 else 12)], order)  # 3 is SHORT
+    for at in range(0, len(content) - size + 1, size):
+        tag, kind = (number(content[begin : begin + 2]) for begin in (at, at + 2))
+        value = content[at + 4 + width : at + size]
+        directory[tag] = number(value[:2] if kind == 3 else value)  # 3 is SHORT
     return directory
 
 

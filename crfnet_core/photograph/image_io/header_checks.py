@@ -1,6 +1,5 @@
 """Check the header of an image file (size, depth, colors), clean its texts, add other segments; errors of decoders."""
 
-import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -14,8 +13,15 @@ from crfnet_core.errors import PhotoError, one_line
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *("support is not configured", "is not implemented", "not supported", "nsupported"),
-    "No support for this flavor",  # TIFF in Lab, or of JPEG with 12 bits
+    *(
+        "support is not configured",
+        "is not implemented",
+        "not supported",
+        "nsupported",
+        "could not find a format reader",
+    ),
+    *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
+    *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )
 
@@ -45,6 +51,7 @@ def check_size(path: Path, width: int, height: int) -> None:
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     """Return the bits per sample, 8, 10, 12 or 16, of an encoded photograph; raise PhotoError for any other file."""
     check_size(path, header.width, header.height)
+    check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:
         raise PhotoError("volume", path=path)
     if kind == "JPEG XL" and text_attribute(header, "ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
@@ -53,27 +60,11 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     sample = str(header.format)
     if sample in ("half", "float", "double"):
         raise PhotoError("scene_linear_file", path=path, kind=f"a file of {sample} samples")
-    stored = {"uint8": 8, "uint16": 16}.get(sample, 0)
+    stored = 8 * header.format.basesize()
     bits = min(header.get_int_attribute("oiio:BitsPerSample", stored), stored)  # XMP may claim more
-    if not stored or bits < 8:
+    if sample not in ("uint8", "uint16") or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
     return bits if bits in (8, 10, 12) else 16
-
-
-def check_dpx_lines(path: Path, header: Any) -> None:
-    """Refuse DPX that would be sheared: lines end at whole words of 32 bits and the header does not say so, or lie."""
-    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
-        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="lines from top to bottom")
-    with path.open("rb") as file:
-        head = file.read(8)
-        stored = file.seek(0, os.SEEK_END) - int.from_bytes(head[4:], "big" if head.startswith(b"SDPX") else "little")
-    line = header.scanline_bytes()
-    if (
-        line % 4
-        and stored == (line + -line % 4) * header.height
-        and not header.get_int_attribute("dpx:EndOfLinePadding")
-    ):
-        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="padded lines that its header does not name")
 
 
 def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
@@ -84,8 +75,16 @@ def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:
     """
     for attribute in header.extra_attribs:
         if (name := _decoded(partial(getattr, attribute, "name"))).isprintable():
-            value = text_attribute(header, name) if str(attribute.type) == "string" else attribute.value
-            yield name, "int" if isinstance(value, int) else attribute.type, value
+            try:
+                value = text_attribute(header, name) if str(attribute.type) == "string" else attribute.value
+            except UnicodeDecodeError:  # lists of texts
+                continue
+            yield name, "int" if isinstance(value, int) and value < 2**31 else attribute.type, value
+
+
+def channel_names(header: Any) -> tuple[str, ...]:
+    """Return the names of the channels in a header."""
+    return tuple(_decoded(partial(header.channel_name, channel)) for channel in range(header.nchannels))
 
 
 def text_attribute(header: Any, name: str) -> str:
@@ -114,7 +113,7 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
     """Return a header with EXIF, XMP and ICC profile, as OpenImageIO reads and names them in a JPEG with them."""
     complete = oiio.ImageSpec(header)
     if exif := info.get("exif"):
-        info = {**info, "exif": _EXIF_NAME + exif.removeprefix(_EXIF_NAME)}
+        info = {**info, "exif": (_EXIF_NAME + exif.removeprefix(_EXIF_NAME))[: _MOST_BYTES["exif"] - 1]}
     fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return complete

@@ -12,10 +12,10 @@ import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import damaged, with_segments
-from crfnet_core.photograph.image_io.iso_boxes import boxes
+from crfnet_core.photograph.image_io.iso_boxes import boxes, find_box
 
-#: Start of the codestream and of its marker SIZ; the start of the box of headers in a JP2 file.
-_SIZE_MARKER, _HEADERS = b"\xff\x4f\xff\x51", b"jp2h"
+#: Start of the codestream and of its marker SIZ.
+_SIZE_MARKER = b"\xff\x4f\xff\x51"
 
 #: Methods of a color box: a space by number, any ICC profile, which OpenImageIO leaves out, and CICP.
 _BY_NUMBER, _ANY_PROFILE, _BY_CICP = b"\1", b"\3", b"\5"
@@ -32,11 +32,8 @@ def with_jp2_boxes(header: Any, path: Path) -> Any:
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = content.find(_SIZE_MARKER)
         _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
-        at = content.find(_HEADERS, 0, start) if start > 0 else -1
-        size = int.from_bytes(content[at - 4 : at]) if at >= 4 else 0
-        inner = content[at + 4 : at - 4 + size] if size else b""  # a bare codestream has no headers
-    try:
-        headers = dict(reversed([*boxes(inner)]))  # of several of one name the first counts
+    try:  # a bare codestream has no boxes; of several of one name the first counts
+        headers = dict(reversed([*boxes(find_box(path, b"jp2h"))]))
     except ValueError as problem:
         raise damaged(path, "JPEG 2000", str(problem)) from None
     if b"pclr" in headers:

@@ -1,11 +1,12 @@
-"""Read HEIC and AVIF, for which OpenImageIO's wheel has no reader, and BMP, of which it ignores the channels' masks.
+"""Read HEIC and AVIF, for which OpenImageIO's wheel has no reader, and BMP and WebP, which it does not read in full.
 
-HEIC is decoded by pi-heif, BMP and AVIF of 8 bits by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is
-decoded by PyAV, which is an optional dependency.
+It ignores the masks of BMP's channels, and of WebP the place of the first frame, or, before version 3.2, EXIF. HEIC is
+decoded by pi-heif, the others by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is decoded by PyAV,
+which is an optional dependency.
 """
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,8 +15,10 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
+from PIL import Image
 from PIL.AvifImagePlugin import AvifImageFile
 from PIL.BmpImagePlugin import BmpImageFile
+from PIL.WebPImagePlugin import WebPImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, damaged, with_segments
@@ -26,7 +29,10 @@ from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeVal
 from crfnet_core.photograph.yuv import Coding, rgb_codes
 
 #: Errors of the decoders for damaged files. Their classes are called, as Image.open refuses 200 megapixels.
-_DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
+_DAMAGE = (
+    *(EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError),
+    Image.DecompressionBombError,  # of WebP nevertheless
+)
 
 #: Most pixels that are decoded for the main picture: of its tiles, and of the picture that they make.
 MOST_DECODED = 4 * MAX_PIXELS
@@ -53,16 +59,16 @@ class _Picture:
 
 
 def read_pillow_file(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of the main picture of a HEIC, AVIF or BMP file, upright, as RGB in full range.
+    """Return the integer samples of the main picture of a HEIC, AVIF, WebP or BMP file, upright, as RGB in full range.
 
     The header has the names that OpenImageIO gives to a JPEG's, and `CICP`, four integers. Raises as `read_photo`.
     """
     meta, main = b"", None
     try:
-        if kind != "BMP":
+        if kind in ("HEIC", "AVIF"):
             meta = _meta(path)
             main = _opened_heif(path, kind)
-        picture = _heic(main) if kind == "HEIC" else _avif(path, main) if kind == "AVIF" else _bmp(path)
+        picture = _READERS[kind](path, main)
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
@@ -93,7 +99,7 @@ def _meta(path: Path) -> bytes:
     return meta
 
 
-def _heic(main: Any) -> _Picture:
+def _heic(_: Path, main: Any) -> _Picture:
     """Return the picture of a HEIC file; libheif turns it upright."""
     samples, info = np.array(main), main.info  # a copy: its memory goes with `main`
     bit_depth = 8 if samples.dtype == np.uint8 else info["bit_depth"]
@@ -116,7 +122,14 @@ def _avif(path: Path, main: Any) -> _Picture:
     return _Picture(np.atleast_3d(samples), max(8, bit_depth), info, is_upright=False)
 
 
-def _bmp(path: Path) -> _Picture:
+def _webp(path: Path, _: Any) -> _Picture:
+    """Return the first frame of a WebP file."""
+    with WebPImageFile(path) as image:
+        check_size(path, *image.size)
+        return _Picture(np.asarray(image), 8, dict(image.info), is_upright=False)
+
+
+def _bmp(path: Path, _: Any) -> _Picture:
     """Return the picture of a BMP file; refuse a palette other than of all grays, and less than 8 bits."""
     with BmpImageFile(path) as image, path.open("rb") as file:
         check_size(path, *image.size)
@@ -129,6 +142,11 @@ def _bmp(path: Path) -> _Picture:
         file.seek(14 + offset)
         profile = file.read(min(size, 1 << 24)) if head[70:74] == _BMP_EMBEDDED else b""
         return _Picture(np.atleast_3d(np.asarray(image)), 8, {"icc_profile": profile})
+
+
+#: The formats that are read here -> their decoders.
+_READERS: dict[str, Callable[[Path, Any], _Picture]] = {"HEIC": _heic, "AVIF": _avif, "BMP": _bmp, "WebP": _webp}
+PILLOW_KINDS = tuple(_READERS)
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
@@ -153,8 +171,8 @@ def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
 def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gain_map: bool) -> CodeValues:
     """Return the upright samples, with a header as OpenImageIO would give it."""
     carried = with_segments(oiio.ImageSpec(), picture.info)
-    orientation = 1 if picture.is_upright else carried.get_int_attribute("Orientation", 1)
-    samples = upright(picture.samples, EXIF_TURNS.get(orientation, UPRIGHT))
+    turn = EXIF_TURNS.get(1 if picture.is_upright else carried.get_int_attribute("Orientation", 1), UPRIGHT)
+    samples = upright(picture.samples, turn)
     height, width, channels = samples.shape
     header = oiio.ImageSpec(width, height, channels, samples.dtype.name)
     header.extra_attribs = carried.extra_attribs
@@ -164,5 +182,5 @@ def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gai
     header.attribute("Orientation", 1)
     if cicp:
         header.attribute("CICP", oiio.TypeDesc("int[4]"), cicp)
-    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map)
+    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map, is_turned=turn != UPRIGHT)
     return CodeValues.from_samples(samples, picture.bit_depth, header, metadata)

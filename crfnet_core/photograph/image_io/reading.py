@@ -11,14 +11,19 @@ from typing import Any, BinaryIO
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from PIL import Image
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
+from crfnet_core.photograph.image_io.dpx_files import check_dpx
+from crfnet_core.photograph.image_io.file_kinds import (
+    EXTRA_SAMPLES,
+    FILL_ORDER,
+    RAW_SUFFIXES,
+    file_kind,
+    tiff_directory,
+)
 from crfnet_core.photograph.image_io.header_checks import (
     MASK,
     WHITE_IS_ZERO,
-    check_dpx_lines,
     checked_bit_depth,
     damaged,
     oiio_message,
@@ -28,7 +33,7 @@ from crfnet_core.photograph.image_io.header_checks import (
 from crfnet_core.photograph.image_io.iso_boxes import find_box
 from crfnet_core.photograph.image_io.jp2_files import with_jp2_boxes
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
-from crfnet_core.photograph.image_io.pillow_files import read_pillow_file
+from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
@@ -83,7 +88,7 @@ def read_codes(path: str | os.PathLike[str]) -> CodeValues:
 
 
 def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
-    """Return the metadata of a file; only of HEIC, AVIF and BMP the pixels are decoded.
+    """Return the metadata of a file; only of HEIC, AVIF, WebP and BMP the pixels are decoded.
 
     Raises as `read_photo` does, but does not see damage among the pixels.
     """
@@ -162,7 +167,7 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
         kind = file_kind(path)
-        if kind in ("HEIC", "AVIF", "BMP"):  # OpenImageIO's wheel does not read them, or not all of them
+        if kind in PILLOW_KINDS:
             yield read_pillow_file(path, kind)
         else:
             with _opened_kind(path, kind) as file:
@@ -187,16 +192,13 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF":
             _seek_picture(source)
         header = with_plain_texts(source.spec())
-        if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
-            header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
-        if kind == "WebP":  # of which OpenImageIO reads no EXIF before version 3.2
-            with suppress(OSError, ValueError), Image.open(path) as picture:
-                header = with_segments(header, picture.info)
+        if kind == "TIFF":
+            _check_tiff(path, header)
         if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
             header = with_jp2_boxes(header, path) if kind == "JPEG 2000" else _with_boxes(header, path)
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
-            check_dpx_lines(path, header)
+            check_dpx(path, header)
         if kind == "JPEG" and str(header.format) == "half":  # Ultra HDR, of which OpenImageIO makes linear light
             with tempfile.TemporaryDirectory() as folder:
                 base = Path(folder, "base.jpg")
@@ -207,6 +209,15 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
             yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()
+
+
+def _check_tiff(path: Path, header: Any) -> None:
+    """Refuse deflated bytes whose bits are in reverse order; make no alpha of channels whose use is not stated."""
+    directory = tiff_directory(path)
+    if directory.get(FILL_ORDER) == 2 and header.get_string_attribute("compression") == "zip":
+        raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")
+    if header.nchannels > 4 and EXTRA_SAMPLES not in directory:
+        header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
 
 
 def _with_boxes(header: Any, path: Path) -> Any:

@@ -10,14 +10,14 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.crafted_files import xmp_packet
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
 
 def test_xmp_does_not_turn_avif(tmp_path):
     """In AVIF only its own boxes turn the picture (MIAF), and Pillow writes them from EXIF."""
-    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
-    xmp += b'<rdf:Description xmlns:tiff="http://ns.adobe.com/tiff/1.0/" tiff:Orientation="3"/></rdf:RDF></x:xmpmeta>'
+    xmp = xmp_packet(b'xmlns:tiff="http://ns.adobe.com/tiff/1.0/" tiff:Orientation="3"')
     codes = colored_ramp(8)
     Image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", xmp=xmp)
     with Image.open(tmp_path / "a.avif") as file:
@@ -92,10 +92,9 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
 def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
     codes, exif = colored_ramp(8), Image.Exif()
     exif[0x010F], exif[0x0112] = "Maker", 6
-    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
-    xmp += b'<rdf:Description xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="Adobe Photoshop 25.0"/>'
+    xmp = xmp_packet(b'xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="Adobe Photoshop 25.0"')
     content = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100").read_bytes()
-    boxes = {b"Exif": bytes(4) + exif.tobytes(), b"xml ": xmp + b"</rdf:RDF></x:xmpmeta>"}
+    boxes = {b"Exif": bytes(4) + exif.tobytes(), b"xml ": xmp}
     added = b"".join(struct.pack(">I", 8 + len(box)) + kind + box for kind, box in boxes.items())
     at = content.index(b"jxlp") - 4
     (tmp_path / "a.jxl").write_bytes(content[:at] + added + content[at:])

@@ -98,15 +98,6 @@ def test_alpha_of_avif_is_told_from_none(tmp_path):
     assert not with_alpha.is_associated
 
 
-def test_avif_is_turned_upright(tmp_path):
-    codes, tags = colored_ramp(8), Image.Exif()
-    tags[0x0112], tags[0x010F] = 6, "Maker"
-    Image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", exif=tags.tobytes())
-    values = read_codes(tmp_path / "a.avif")
-    assert np.abs(values.codes.astype(int) - np.rot90(codes, -1)).max() <= 3
-    assert (values.metadata.make, values.header.get_int_attribute("Orientation")) == ("Maker", 1)
-
-
 @pytest.mark.parametrize(
     ("name", "package", "code"),
     [("limited10.avif", "av", "deep_avif_package_missing"), ("rgb8.heic", "pi_heif", "heif_package_missing")],

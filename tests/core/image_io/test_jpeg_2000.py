@@ -58,12 +58,13 @@ def test_alpha_is_associated_if_the_file_says_so(tmp_path, kind, is_associated):
     [
         *(({"color": b"\1\0\0" + struct.pack(">I", space)}, "other_colors") for space in (12, 14)),
         ({"boxes": PALETTE}, "palette"),
+        ({"codes": colored_ramp(8)[:47, :, :2]}, "coding_not_read"),
         ({"components": [(0x87, 1, 1)]}, "coding_not_read"),
         ({"components": [(7, 1, 1), (7, 2, 2), (7, 2, 2)]}, "coding_not_read"),
     ],
 )
 def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments, code):
-    path = jp2(tmp_path / "a.jp2", colored_ramp(8)[:47], **arguments)
+    path = jp2(tmp_path / "a.jp2", **{"codes": colored_ramp(8)[:47], **arguments})
     for read in (read_codes, read_metadata):
         with refused(PhotoError, code):
             read(path)

@@ -11,7 +11,7 @@ from crfnet.plates.exr import linear_header
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
+from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment, xmp_packet
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
@@ -26,17 +26,19 @@ def test_white_is_zero_but_alpha_is_not_inverted(tmp_path, bits):
     np.testing.assert_array_equal(values.alpha, codes[..., 1])
 
 
-def test_channels_of_unknown_use_are_not_alpha(tmp_path):
+@pytest.mark.parametrize(("photometric", "colors"), [(2, [0, 1, 2]), (1, [0, 0, 0])])
+def test_channels_of_unknown_use_are_neither_colors_nor_alpha(tmp_path, photometric, colors):
     codes = np.arange(20, dtype=np.uint8).reshape(2, 2, 5)
-    (tmp_path / "a.tif").write_bytes(tiff(2, 2, samples=5, content=codes.tobytes()))
+    (tmp_path / "a.tif").write_bytes(tiff(2, 2, samples=5, photometric=photometric, content=codes.tobytes()))
     values = read_codes(tmp_path / "a.tif")
     assert values.alpha is None
-    np.testing.assert_array_equal(values.codes, codes[..., :3])
+    np.testing.assert_array_equal(values.codes, codes[..., colors])
 
 
-def test_the_last_of_two_more_channels_may_be_alpha_by_which_colors_are_multiplied(tmp_path):
-    content = tiff(2, 2, samples=5, extra=((338, 3, 1 << 16),), content=bytes((50, 60, 70, 7, 128) * 4))
-    (tmp_path / "a.tif").write_bytes(content.replace(struct.pack("<HHI", 338, 3, 1), struct.pack("<HHI", 338, 3, 2)))
+@pytest.mark.parametrize("form", [struct.Struct("<HHI"), struct.Struct("<HHQ")])
+def test_the_last_of_two_more_channels_may_be_alpha_by_which_colors_are_multiplied(tmp_path, form):
+    more = {"extra": ((338, 3, 1 << 16),), "content": bytes((50, 60, 70, 7, 128) * 4), "is_big": form.size > 8}
+    (tmp_path / "a.tif").write_bytes(tiff(2, 2, samples=5, **more).replace(form.pack(338, 3, 1), form.pack(338, 3, 2)))
     values = read_codes(tmp_path / "a.tif")
     assert (values.is_associated, set(values.alpha.flat)) == (True, {128})
     np.testing.assert_allclose(values.pixels()[0, 0], np.array([50, 60, 70]) / 128, atol=1e-6)
@@ -91,7 +93,7 @@ def test_bmp_of_runs(tmp_path, size):
     assert read_codes(tmp_path / "a.bmp").codes[..., 0].tolist() == [[7, 7, 7, 7], [9, 9, 9, 8]]
 
 
-@pytest.mark.parametrize("name", ["a.bmp", "a.jxl"])
+@pytest.mark.parametrize("name", ["a.bmp", "a.jxl", "a.webp"])
 def test_alpha_that_is_straight_by_the_format(tmp_path, name):
     codes = np.random.default_rng(0).integers(0, 256, (32, 32, 4), np.uint8)
     masks = (0xFF0000, 0xFF00, 0xFF, 0xFF000000)
@@ -99,10 +101,20 @@ def test_alpha_that_is_straight_by_the_format(tmp_path, name):
     start = struct.pack("<2sIHHI", b"BM", 122 + codes.size, 0, 0, 122)
     (tmp_path / "a.bmp").write_bytes(start + header.ljust(108, b"\0") + codes[..., [2, 1, 0, 3]].tobytes())
     write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100")
+    Image.fromarray(codes).save(tmp_path / "a.webp", lossless=True, exact=True)
     values = read_codes(tmp_path / name)
     np.testing.assert_array_equal(values.alpha, codes[..., 3])
     np.testing.assert_allclose(values.pixels(), codes[..., :3] / 255, atol=1e-6)
     assert not values.is_associated
+
+
+def test_the_first_frame_of_a_webp_file_may_be_a_part_of_the_picture(tmp_path):
+    """OpenImageIO leaves the rest as the memory is."""
+    first, second = (Image.new("RGBA", (64, 48), color) for color in ((0, 0, 0, 0), (50, 60, 70, 128)))
+    first.paste((1, 2, 3, 255), (4, 4, 20, 20))
+    first.save(tmp_path / "a.webp", save_all=True, append_images=[second], lossless=True)
+    values = read_codes(tmp_path / "a.webp")
+    np.testing.assert_array_equal(np.dstack([values.codes, values.alpha]), np.asarray(first))
 
 
 def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
@@ -113,12 +125,28 @@ def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
         read_codes(tmp_path / "a.bmp")
 
 
-def test_dpx_with_lines_from_top_to_bottom_is_refused(tmp_path):
-    path = write_image(tmp_path / "a.dpx", np.zeros((16, 24, 3), np.uint8))
+@pytest.mark.parametrize(
+    ("orientation", "elements", "descriptor", "channels"),
+    [(5, 1, 50, 3), (0, 3, 1, 3), *((0, 1, descriptor, 3) for descriptor in (53, 100, 151)), (0, 1, 51, 4)],
+)
+def test_dpx_that_openimageio_misreads_is_refused(tmp_path, orientation, elements, descriptor, channels):
+    """Lines from top to bottom, planes apart, other components, and lines of 10 bits that end within a word."""
+    path = write_image(tmp_path / "a.dpx", np.zeros((16, 25, channels), np.uint16), oiio__BitsPerSample=10)
     content = bytearray(path.read_bytes())
-    content[768:770] = (5).to_bytes(2, "big" if content.startswith(b"SDPX") else "little")
+    content[768:772] = struct.pack(">2H" if content.startswith(b"SDPX") else "<2H", orientation, elements)
+    content[800] = descriptor
     path.write_bytes(content)
     with refused(PhotoError, "coding_not_read"):
+        read_codes(path)
+
+
+@pytest.mark.parametrize("bits", [10, 12])
+@pytest.mark.parametrize("part", [0.5, 0.99])
+def test_dpx_that_is_cut_short_is_refused(tmp_path, bits, part):
+    path = write_image(tmp_path / "a.dpx", np.zeros((160, 24, 3), np.uint16), oiio__BitsPerSample=bits)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(part * len(content))])
+    with refused(PhotoError, "damaged"):
         read_codes(path)
 
 
@@ -138,9 +166,8 @@ def test_xmp_does_not_change_the_bits(tmp_path):
     """OpenImageIO hands properties of any namespace on under their own names."""
     whole, path = jpeg(tmp_path / "a.jpg"), tmp_path / "a.jpg"
     expected = read_codes(path).codes
-    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
-    xmp += b'<rdf:Description xmlns:oiio="oiio" oiio:BitsPerSample="10" xmlns:png="png" png:palette="1"/></rdf:RDF>'
-    path.write_bytes(with_jpeg_segment(whole, 0xE1, b"http://ns.adobe.com/xap/1.0/\0" + xmp + b"</x:xmpmeta>"))
+    xmp = xmp_packet(b'xmlns:oiio="oiio" oiio:BitsPerSample="10" xmlns:png="png" png:palette="1"')
+    path.write_bytes(with_jpeg_segment(whole, 0xE1, b"http://ns.adobe.com/xap/1.0/\0" + xmp))
     values = read_codes(path)
     assert values.bit_depth == 8
     np.testing.assert_array_equal(values.codes, expected)

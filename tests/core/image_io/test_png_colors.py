@@ -101,7 +101,7 @@ def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
 @pytest.mark.parametrize("name", [b"", b"Exif\0\0"])
 def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
     exif = Image.Exif()
-    exif[0x0112], exif[0x010F] = 6, "Maker"
+    exif[0x0112], exif[0x010F], exif[0x8769] = 6, "Maker", {0x8832: 2**32 - 1}  # a number beyond int
     chunk = png_chunk(b"eXIf", name + exif.tobytes().removeprefix(b"Exif\0\0"))
     content = png(2, 2, bytes([0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4]))
     at = content.index(b"IDAT" if place == "in front" else b"IEND") - 4

@@ -8,6 +8,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.pipeline.photographs import unreadable_reason
 from crfnet.plates import frame_files
+from crfnet.plates.exr import linear_header
 from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import CRFNetError, PhotoError
@@ -84,6 +85,16 @@ def test_the_first_part_with_colors_is_read(tmp_path, first):
     assert output.write_image(values)
     output.close()
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, values)
+
+
+def test_an_exr_with_names_that_are_not_utf8(tmp_path):
+    path = write_exr(tmp_path / "a.exr", np.full((4, 4, 4), 0.5), ("R", "G", "B", "l_ft.Z"), multiView="l_ft_right")
+    content = path.read_bytes().replace(b"l_ft", b"l\xe4ft")
+    text, texts = b"multiView\0string\0\x0a\0\0\0", b"multiView\0stringvector\0\x0e\0\0\0\x0a\0\0\0"
+    assert text in content
+    path.write_bytes(content.replace(text, texts))
+    header = read_frame(path, is_encoded=True).header
+    assert linear_header(header, channels=3, depth="half", attributes={}).nchannels == 3
 
 
 @pytest.mark.parametrize(("depth", "code"), [("uint", "exr_channels"), ("float", "exr_codes")])

@@ -7,7 +7,7 @@ import pytest
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.luts.rgb_lut import lut_identity
-from crfnet.plates.exr import STANDARD_NAMES
+from crfnet.plates.exr import STANDARD_NAMES, linear_header
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr
 
@@ -118,9 +118,18 @@ def test_time_code_and_rate_are_kept(tmp_path, out):
     assert result["PixelAspectRatio"] == 2
 
 
-def test_a_pixel_aspect_of_0_as_ffmpeg_writes_it_is_left_out(tmp_path, out):
-    linearize(write_image(tmp_path / "a.dpx", SMALL[..., :3], PixelAspectRatio=0.0), out / "a.exr", LUT)
+@pytest.mark.parametrize(("name", "ratio"), [("a.dpx", 0.0), ("a.png", "1:1")])
+def test_a_pixel_aspect_that_openexr_cannot_hold_is_left_out(tmp_path, out, name, ratio):
+    """FFmpeg's DPX has 0, and PNG texts of any name."""
+    plate = write_image(tmp_path / name, SMALL[..., :3], PixelAspectRatio=ratio, Exif__FocalLength="35 mm")
+    linearize(plate, out / "a.exr", LUT)
     assert read_exr(out / "a.exr")[1].getattribute("PixelAspectRatio") in (None, 1)
+
+
+def test_the_first_of_several_speeds_counts():
+    header = oiio.ImageSpec(2, 2, 3, "uint8")
+    header.attribute("Exif:PhotographicSensitivity", oiio.TypeDesc("uint[3]"), (100, 200, 2**32 - 1))
+    assert linear_header(header, channels=3, depth="half", attributes={}).getattribute("isoSpeed") == 100
 
 
 def test_output_is_reproducible_and_undated(tmp_path, out):
