@@ -22,6 +22,9 @@ from .options import OutputOptions
 #: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
 LONGEST_STEM = 200
 
+#: Most bytes of a hint behind it: see `distinct_names`.
+LONGEST_HINT = 32
+
 #: How the name of a sheet ends, after the stem.
 SHEET_ENDING = "_sheet.png"
 
@@ -80,10 +83,10 @@ def _plain(name: str) -> str:
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:
     """Yield names for something that is to be called `name`, unless that is taken: the first is `name` itself.
 
-    The others have `hint`, such as the folder, in parentheses, and then numbers from 2.
+    The others have `hint`, such as the folder, in parentheses, cut to `LONGEST_HINT` bytes, and then numbers from 2.
     """
     yield name
-    hint = _plain(hint)
+    hint = cut_to_bytes(_plain(hint), LONGEST_HINT)
     if hint:
         yield f"{name} ({hint})"
     for number in itertools.count(2):

@@ -6,7 +6,7 @@ next to the new config. Nothing of the base is changed, nothing is deleted.
 """
 
 import copy
-import os
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -104,16 +104,19 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
     """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
     file, config = Path(look.space.lut_file), base.config
     taken = {folded(name) for name in (*names, *_other_names(config))}
+    aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     used = {folded(name) for name in lut_files} | _names_on_path(base)
-    lut_file = next(name for name in stems if folded(name) not in used)
+    text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
+    named = (name for name in stems if not re.search(rf"[\s\"'/\\]{re.escape(folded(name))}", text))
+    lut_file = next(name for name in named if folded(name) not in used)
     free = (name for name in distinct_names(look.space.name, look.folder) if folded(name) not in taken)
     name = next(name for name in free if config.getColorSpace(name) is None)
-    return replace(look.space, name=name, lut_file=lut_file)
+    return replace(look.space, name=name, lut_file=lut_file, aliases=aliases)
 
 
 def _other_names(config: OCIO.Config) -> Iterator[str]:
-    """Yield the names that a color space may not have besides the names of color spaces, roles, looks and views."""
+    """Yield the names that a color space may not have besides the names of color spaces and roles."""
     yield from map(str.strip, config.getInactiveColorSpaces().split(","))
     for name in config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL):
         yield from (name, *config.getNamedTransform(name).getAliases())
@@ -139,9 +142,7 @@ def _absolute_paths(folder: str, home: Path) -> list[str]:
     """Return the absolute search paths for one of a config in `home`; the value of a variable may be absolute, too."""
     if "$" in str(home) or str(home).count("%") > 1:
         raise ConfigError("base_folder_is_variable", path=home)
-    if folder.startswith(("$", "%")):
-        return [f"{home}/{folder}", folder]
-    return [os.path.normpath(home / folder)]  # as OpenColorIO does: "link/.." is not where the link leads
+    return [str(home / folder), *([folder] if folder.startswith(("$", "%")) else [])]
 
 
 def _names_on_path(base: ConfigSource) -> set[str]:

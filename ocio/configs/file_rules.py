@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 
 import PyOpenColorIO as OCIO
 
@@ -28,7 +29,10 @@ COUNTER_NAMES = (
 MOST_PATTERNS = 100
 
 #: Frame numbers at the end of a name: shot.0001, shot.-0001.
-FRAME_NUMBER = re.compile(r"\.-?\d{2,}$")
+FRAME_NUMBER = re.compile(r"\.-?[0-9]{2,}$")
+
+#: Matches a number of any length in the regular expressions of rules.
+ANY_NUMBER = r"(?:-\?)?\[0-9\]\+"
 
 
 def plate_pattern(name: str) -> str:
@@ -66,18 +70,16 @@ def rule_regex(patterns: Iterable[str]) -> str:
 
 
 def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
-    """Put the file rule `name` of a plate before all others of a config, in place, and return whether it is there.
+    """Put the file rule `name` of a plate before all others of a config, in place; return whether it leads to `space`.
 
-    Where a rule of another plate leads one of the files to another space, neither gets the file: that rule then leads
-    to the space that the file has without both, and stays, so that a third plate of the name finds it.
+    Where rules of other plates lead one of the files to another space, none gets the file: all these rules then lead to
+    the space that the file has without them, and stay, so that a third plate of the name finds them.
     """
-    is_shared = [_release(config, pattern, space) for pattern in patterns]
-    if any(is_shared):
-        return False
+    usual = [each for pattern in patterns if (each := _release(config, pattern, space))]
     rules = config.getFileRules()
-    rules.insertRule(0, name, space, rule_regex(patterns))
+    rules.insertRule(0, name, next(iter(usual), space), rule_regex(patterns))
     config.setFileRules(rules)
-    return True
+    return not usual
 
 
 def color_space_of_file(config: OCIO.Config, name: str) -> str:
@@ -94,24 +96,34 @@ def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
     return {rules.getRegex(index): rules.getColorSpace(index) for index in indices}
 
 
-def _release(config: OCIO.Config, pattern: str, space: str) -> bool:
-    """Take the files of a pattern from the plate whose rule leads them to another space; return whether one does."""
-    rules, alternative = config.getFileRules(), _pattern_regex(pattern)
-    texts = [f"{before}{alternative}{after}" for before in "(|" for after in ")|"]
+def _release(config: OCIO.Config, pattern: str, space: str) -> str:
+    """Take the files of a pattern from other plates whose rules lead them to another space than `space`.
+
+    Return the space that they have without these rules; an empty text if there are none.
+    """
+    rules, same, shared = config.getFileRules(), _same_files(pattern), list[tuple[int, str, str]]()
     for index in range(rules.getNumEntries() - 1):  # the last one is the default
-        regex = rules.getRegex(index)
-        if alternative in regex and any(text in regex for text in texts) and _is_of_plate(config, rules.getName(index)):
-            break
-    else:
-        return False
-    if rules.getColorSpace(index) == space:
-        return False
-    name = rules.getName(index)
-    rules.removeRule(index)
+        name, regex = rules.getName(index), rules.getRegex(index)
+        if same.search(regex) and _is_of_plate(config, name) and rules.getColorSpace(index) != space:
+            shared.append((index, name, regex))
+    if not shared:
+        return ""
+    for index, *_ in reversed(shared):
+        rules.removeRule(index)
     config.setFileRules(rules)
-    rules.insertRule(index, name, color_space_of_file(config, re.sub(r"[*?#]", "1", pattern)), regex)
+    usual = color_space_of_file(config, re.sub(r"[*?#]", "1", pattern))
+    for index, name, regex in shared:
+        rules.insertRule(index, name, usual, regex)
     config.setFileRules(rules)
-    return True
+    return usual
+
+
+def _same_files(pattern: str) -> re.Pattern[str]:
+    """Return what finds names of a pattern, in which any number is a frame, in the regular expression of a rule."""
+    parts = re.split(f"({ANY_NUMBER}|[0-9]+)", _pattern_regex(pattern))
+    numbers = [f"({ANY_NUMBER}|{part if part.isdigit() else '[0-9]+'})" for part in parts[1::2]]
+    text = "".join(re.escape(part) + number for part, number in zip_longest(parts[::2], numbers, fillvalue=""))
+    return re.compile(f"[(|]{text}[)|]")
 
 
 def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
@@ -122,7 +134,7 @@ def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
 
 def _linear_pattern(name: str) -> str:
     """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
-    return re.sub(r"\.-?\d{2,}(?=_linear\.exr$)", ".#", literal(name))
+    return re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name))
 
 
 def _pattern_regex(pattern: str) -> str:

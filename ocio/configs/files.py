@@ -30,11 +30,8 @@ MOST_SPACES = 2500
 #: The most variables of a config, and characters that one may expand to: variables of variables multiply, too.
 MOST_VARIABLES, LONGEST_VALUE = 100, 4096
 
-#: An alias where YAML allows a value, and the tags of color spaces; with their bounds.
-_BOUNDED = {
-    "YAML aliases": (re.compile(r"(?:^|[\s\[{,:])\*[^\s\[\]{},]", re.MULTILINE), MOST_ALIASES),
-    "color spaces": (re.compile("!<(?:ColorSpace|NamedTransform)>"), MOST_SPACES),
-}
+#: The tags of color spaces; and the names of YAML's anchors and aliases, which stand behind these characters.
+_SPACE, _ANCHOR, _ALIAS = "!<(?:ColorSpace|NamedTransform)>", r"&([^\s\[\]{},]+)", r"\*([^\s\[\]{},]+)"
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
 TOLERANCE = 1e-5
@@ -56,9 +53,12 @@ def load_config(path: str | Path) -> OCIO.Config:
     if not os.path.lexists(path):
         raise ConfigError("no_such_file", path=path)
     try:
-        text = read_bytes(path, most=MAX_CONFIG_SIZE).decode()
-        for kind, (pattern, most) in _BOUNDED.items():
-            if len(pattern.findall(text.replace("\0", ""))) > most:  # in UTF-16, too
+        text = read_bytes(path, most=MAX_CONFIG_SIZE).decode().replace("\0", "")  # of UTF-16
+        anchors = set(re.findall(_ANCHOR, text))
+        aliases = [name for name in re.findall(_ALIAS, text) if name in anchors]  # others are stars of a comment
+        bounded = {"YAML aliases": (aliases, MOST_ALIASES), "color spaces": (re.findall(_SPACE, text), MOST_SPACES)}
+        for kind, (found, most) in bounded.items():
+            if len(found) > most:
                 raise ConfigError("config_too_many", path=path, most=most, kind=kind)
         config = OCIO.Config.CreateFromFile(str(path))
         values = {name: config.getEnvironmentVarDefault(name) for name in config.getEnvironmentVarNames()}

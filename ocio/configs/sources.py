@@ -40,7 +40,7 @@ def find_config(name: str) -> ConfigSource:
     or the folder or the executable of a Blender. Raise a ConfigError if there is none, or it cannot be loaded.
     """
     if name in VARIABLE_NAMES:
-        if not (value := os.environ.get(VARIABLE, "").strip()):
+        if (value := os.environ.get(VARIABLE, "").strip()) in ("", *VARIABLE_NAMES):
             raise ConfigError("config_variable_unset", name=name, variable=VARIABLE)
         return find_config(value)
     path = None if name.startswith(BUILT_IN) else _config_file(Path(name).expanduser())

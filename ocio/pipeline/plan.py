@@ -60,7 +60,7 @@ def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions,
 
 def _other_spaces(files: OutputFiles) -> tuple[str, ...]:
     """Return the color spaces of other plates in the config that is there; none if it cannot be read."""
-    with suppress(ConfigError, UnicodeError):  # a name, or the error's text, may not be UTF-8
+    with suppress(ConfigError):
         plates = plates_in_config(load_config(files.config))
         return tuple(plate.name for plate in plates if plate.name != files.color_space)
     return ()

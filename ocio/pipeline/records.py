@@ -4,23 +4,24 @@ Nothing is ever rewritten, so several runs may append to one file at once, and a
 several records of one photograph, the last holds.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any, BinaryIO
+from typing import Annotated, Any, BinaryIO, Self
 
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.files import parse_json
 from crfnet_core.locks import lock
-from crfnet_core.types import number_of
+from crfnet_core.types import LARGEST, typed_value
 
 from ..errors import PlateError
 from ..plates.primaries import PlatePrimaries
+
+#: A number that may be negative.
+Signed = Annotated[float, (-LARGEST, LARGEST)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,13 +36,13 @@ class PhotographRecord:
     folder: str = ""
     lut: str = ""
     linear: str = ""
-    weights: tuple[float, ...] = ()
+    weights: tuple[Signed, ...] = ()
     family: str = ""
     verdict: str = ""
     uncertainty: float | None = None
     shape_uncertainty_stops: float | None = None
     warnings: tuple[str, ...] = ()
-    exposure: float = 0.0
+    exposure: Signed = 0.0
     primaries: Mapping[str, Any] | None = None
     primaries_source: str = ""
     summary: str = ""
@@ -49,16 +50,12 @@ class PhotographRecord:
     error: str = ""
 
     @classmethod
-    def from_entry(cls, entry: Mapping[str, Any]) -> PhotographRecord:
+    def from_entry(cls, entry: Mapping[str, Any]) -> Self:
         """Return the record of a line, without unknown entries; what is not a record raises errors of Python."""
-        known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
-        known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
-        record = cls(**{**known, "exposure": number_of(entry.get("exposure", 0.0))})
-        paths = [record.folder, record.lut, record.linear]
-        texts = [*paths, record.photograph, record.place, record.error, record.plate.name]
-        if not all(isinstance(text, str) for text in texts):
-            raise TypeError("a name is not a text")
-        if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
+        record: Self = typed_value(entry, cls)
+        typed_value(record.plate.name, str)
+        paths = map(PurePosixPath, (record.folder, record.lut, record.linear))
+        if any(path.is_absolute() or ".." in path.parts for path in paths):
             raise ValueError("a path leads elsewhere")  # files there might be replaced
         return record
 
@@ -98,9 +95,12 @@ class RecordFile:
         return {record.place: record for record in records}
 
     def append(self, record: PhotographRecord) -> None:
-        """Append a record, and see that it is on the disk."""
+        """Append a record, and see that it is on the disk; leave out an error beside the files of another run."""
         text = json.dumps(asdict(record), ensure_ascii=False) + "\n"
         with self.locked() as file:
+            earlier = self.read().get(record.place) if record.error and not record.stem else None
+            if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
+                return
             _drop_cut_line(file)
             file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text in a file's name
             file.flush()

@@ -2,9 +2,10 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, as_completed
-from dataclasses import replace
+from concurrent.futures import BrokenExecutor, CancelledError, as_completed
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Progress, cores, show_progress
@@ -86,12 +87,29 @@ def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
         single = replace(tasks[0].batch, options=replace(tasks[0].batch.options, threads=1))
         tasks = [replace(task, batch=single) for task in tasks]
     with worker_pool(workers, scheduler=scheduler) as pool:
-        futures = [pool.submit(_recorded, task) for task in tasks]
+        futures = {pool.submit(_recorded, _absolute(task) if scheduler else task): task for task in tasks}
         try:
             for future in as_completed(futures):
-                yield future.result()
-        except BrokenExecutor as problem:
+                problem, task = future.exception(), futures[future]
+                if isinstance(problem, BrokenExecutor):
+                    raise problem
+                yield task.failure(problem) if problem else replace(future.result(), photograph=str(task.photo))
+        except (BrokenExecutor, CancelledError) as problem:  # the latter of a cluster whose scheduler has gone
             raise PlateError("process_died") from problem
+
+
+def _absolute(task: Task) -> Task:
+    """Return a task for workers that run in other folders."""
+    options = _with_absolute_paths(task.batch.options)
+    batch = _with_absolute_paths(replace(task.batch, options=options))
+    return replace(task, photo=task.photo.absolute(), batch=batch)
+
+
+def _with_absolute_paths(item: Any) -> Any:
+    """Return a dataclass with absolute paths of what is there, but for folders in the output's."""
+    facts = {each.name: getattr(item, each.name) for each in fields(item) if each.name != "folder"}
+    paths = {name: Path(fact) for name, fact in facts.items() if isinstance(fact, Path) or str(fact).endswith(".json")}
+    return replace(item, **{name: path.absolute() for name, path in paths.items() if path.exists()})
 
 
 def _recorded(task: Task) -> PhotographRecord:

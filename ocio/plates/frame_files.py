@@ -113,7 +113,7 @@ def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
 def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     """Yield an OpenEXR file as an OpenImageIO.ImageInput, or refuse it."""
     if path.exists() and not path.is_file():  # a pipe would block
-        raise PlateError("plate_is_pipe", path=path)
+        raise PlateError("not_a_file", path=path)
     source, problem = oiio.ImageInput.open(str(path)), oiio_message()
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))

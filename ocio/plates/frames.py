@@ -19,7 +19,7 @@ from .frame_pattern import FramePattern, listed
 _NO_SEQUENCE = {
     "folder": "folder_without_sequence",
     "file": "single_file",
-    "pipe": "plate_is_pipe",
+    "pipe": "not_a_file",
     "": "no_such_plate",
 }
 

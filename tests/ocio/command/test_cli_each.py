@@ -6,6 +6,9 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +16,7 @@ import pytest
 from crfnet.cli.arguments.parts import NOT_TRUSTED
 from crfnet.defaults import ESTIMATES
 from crfnet.errors import PlateError
-from crfnet.pipeline import batch, each, workers
+from crfnet.pipeline import batch, each, run, workers
 from crfnet.pipeline.records import PhotographRecord, RecordFile
 from tests.helpers.folders import listed, tree
 from tests.helpers.footage import log_picture
@@ -168,6 +171,17 @@ def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
         file.read()
 
 
+def test_an_error_does_not_hide_the_record_of_another_runs_files(tmp_path):
+    file, names = RecordFile(tmp_path / ESTIMATES), {"photograph": "a.jpg", "place": "a.jpg"}
+    (tmp_path / "a.spi1d").touch()
+    file.append(PhotographRecord(**names, lut="a.spi1d", exposure=-1, weights=(-0.5, 1)))
+    file.append(PhotographRecord(**names, error="exists"))
+    assert file.read()["a.jpg"].weights == (-0.5, 1)
+    (tmp_path / "a.spi1d").unlink()
+    file.append(PhotographRecord(**names, error="exists"))
+    assert file.read()["a.jpg"].error == "exists"
+
+
 def test_a_lut_that_was_damaged_since_is_named_and_estimated_again(estimate, photographs, tmp_path):
     estimate(photographs, *QUICK)
     (tmp_path / "out" / "a.spi1d").write_text("no LUT")
@@ -219,17 +233,35 @@ def kill_a_busy_worker(distributed, cluster):
 
 
 def test_a_dask_worker_that_dies_loses_nothing(photographs, fixed_model, tmp_path):
+    """Workers run in another folder than the command, whose names are relative."""
     distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'crfnet[cluster]'")
     for number in range(3):
         shutil.copy(photographs / "a.jpg", photographs / f"more {number}.jpg")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK[:-2]]
+        arguments = ["estimate", photographs.name, "--out", "out", "--model", fixed_model, *QUICK[:-2]]
         command = [sys.executable, "-m", "crfnet.cli.main", *arguments, "--scheduler", cluster.scheduler_address]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        with subprocess.Popen(command, **pipes, text=True, cwd=tmp_path) as process:
             kill_a_busy_worker(distributed, cluster)
             _, err = process.communicate(timeout=100)
     assert (process.returncode, err) == (0, "")
     assert [record["error"] for record in records_in(tmp_path / "out")] == [""] * 6
+    assert all(record["photograph"].startswith("photographs") for record in records_in(tmp_path / "out"))
+
+
+@pytest.mark.parametrize(("problem", "code"), [(None, "process_died"), (KeyError("a"), "photographs_failed")])
+def test_a_cluster_that_goes_and_a_worker_that_fails_are_one_line(estimate, photographs, monkeypatch, problem, code):
+    def submit(*_):
+        future = Future()
+        if problem is None:
+            future.cancel()
+            future.set_running_or_notify_cancel()
+        else:
+            future.set_exception(problem)
+        return future
+
+    monkeypatch.setattr(run, "worker_pool", lambda *_, **__: nullcontext(SimpleNamespace(submit=submit)))
+    assert estimate(photographs, *QUICK).refusal == code
 
 
 @pytest.mark.parametrize(

@@ -54,9 +54,10 @@ def test_the_environments_config(name, config, monkeypatch):
     assert find_config(name).path == config
     monkeypatch.setenv("OCIO", "ocio://cg-config-latest")
     assert find_config(name).path is None
-    monkeypatch.delenv("OCIO")
-    with refused(ConfigError, "config_variable_unset"):
-        find_config(name)
+    for value in ("", " $OCIO "):
+        monkeypatch.setenv("OCIO", value)
+        with refused(ConfigError, "config_variable_unset"):
+            find_config(name)
 
 
 class TestBlender:

@@ -14,10 +14,10 @@ from crfnet.configs.file_rules import (
 )
 from crfnet.configs.portable import portable_config
 from tests.helpers.configs import loaded
-from tests.helpers.looks import add, write_look
+from tests.helpers.looks import STUDIO, add, space_of, write_look
 
 
-def space_of(pattern, path):
+def matched_space(pattern, path):
     """The color space that OpenColorIO's own rules give a file."""
     config = portable_config([])
     add_file_rule(config, "plate", "ACEScct", [pattern])
@@ -42,8 +42,8 @@ def space_of(pattern, path):
     ],
 )
 def test_a_pattern_holds_for_full_names(pattern, matching, others):
-    assert {path: space_of(pattern, path) for path in matching} == dict.fromkeys(matching, "ACEScct")
-    assert "ACEScct" not in [space_of(pattern, path) for path in others]
+    assert {path: matched_space(pattern, path) for path in matching} == dict.fromkeys(matching, "ACEScct")
+    assert "ACEScct" not in [matched_space(pattern, path) for path in others]
     assert all(re.fullmatch(rule_regex([pattern]), path) for path in matching)
 
 
@@ -78,7 +78,7 @@ def test_names_that_somebody_gave_are_his(name):
     [
         ("plate01.jpg", "plate01.jpg"),
         *(("shot.0001.jpg", "shot.#.jpg"), ("shot.-0001.jpg", "shot.#.jpg")),
-        ("shot.1.jpg", "shot.1.jpg"),
+        *(("shot.1.jpg", "shot.1.jpg"), ("shot.๒๓.jpg", "shot.๒๓.jpg")),
         ("a#1.0001.jpg", "a[#]1.#.jpg"),
         ("noextension", "noextension"),
         (".hidden", ".hidden"),
@@ -104,3 +104,33 @@ def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path
     studio.write_text(config.serialize())
     done = add(studio, tmp_path / "new", write_look(tmp_path / "look", interop_id="lin_adobergb_scene"))
     assert done.without_rule == ("plate01_linear.exr", "plate01.#.exr")
+
+
+@pytest.mark.parametrize("order", ["abc", "acb", "bca", "cab"])
+def test_a_sequence_and_another_shots_frame_of_its_names_get_no_rule(tmp_path, order):
+    names = {"a": "skyline_001.png", "b": "skyline_001.png", "c": "skyline_002.png"}
+    sequences = {"a": "skyline_#.png"}
+    looks = [write_look(tmp_path / each, [names[each]], sequence=sequences.get(each, "")) for each in order]
+    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
+    assert {space_of(result, f"skyline_{number}.png") for number in ("001", "002", "3")} == {"sRGB - Display"}
+
+
+def test_a_rule_of_an_earlier_crfnet_is_of_the_same_files(tmp_path):
+    one = add(STUDIO, tmp_path / "one", write_look(tmp_path / "a", ["sky.0001.png"]))
+    one.path.write_text(one.path.read_text().replace("-?[0-9]+", "[0-9]+"))
+    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b", ["sky.0001.png"]))
+    assert space_of(loaded(two.path), "sky.0001.png") == "sRGB - Display"
+
+
+def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path):
+    look = write_look(tmp_path / "a", interop_id="lin_ap1_scene")
+    done = add(STUDIO, tmp_path / "show", look, write_look(tmp_path / "b"))
+    assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
+    assert "plate01_linear.exr" in done.without_rule
+
+
+def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
+    look = write_look(tmp_path / "look", ["clip.mp4 frame 1", "clip.mp4 frame 9"], interop_id="lin_ap1_scene")
+    result = loaded(add(STUDIO, tmp_path / "show", look).path)
+    assert space_of(result, "/x/clip.mp4") == "CRF clip"
+    assert [space_of(result, path) for path in ("clip.0001.exr", "clip_linear.exr")] == ["ACEScg"] * 2

@@ -1,6 +1,7 @@
 import functools
 import json
 from dataclasses import asdict
+from itertools import islice
 from unittest.mock import Mock
 
 import numpy as np
@@ -12,6 +13,7 @@ from crfnet.errors import ConfigError, LutError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.luts.rgb_lut import RgbLut1D
+from crfnet.output_files import LONGEST_STEM, distinct_names
 from crfnet_core.colorimetry import AP1, DISPLAY_P3, REC709, Primaries
 from tests.helpers.looks import LUT, OTHER_LUT, write_look
 from tests.helpers.refusals import refused
@@ -131,3 +133,9 @@ def test_a_lut_of_another_kind_is_refused(tmp_path):
     for name in ("forward.spi1d", "rgb.cube"):
         with refused(LutError, "lut_without_inverse_response"):
             read_looks(tmp_path / name)
+
+
+def test_the_files_of_plates_of_one_long_name_can_be_written():
+    names = [*islice(distinct_names("x" * LONGEST_STEM, "ä" * 100), 3)]
+    assert len({*names}) == 3
+    assert max(len(name.encode()) for name in names) <= 255 - len(".spi1d")

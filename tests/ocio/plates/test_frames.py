@@ -142,7 +142,7 @@ def test_frames_that_are_too_far_apart_are_refused(tmp_path):
         *((name, None, "no_such_plate") for name in ("q.png", "x" * 300 + ".png", "p.*.png")),
         *(("empty", None, "folder_without_sequence"), ("p.0001.png", "1-3", "single_file")),
         *(("q.%04d.png", None, "no_such_frames"), ("p.%04d.png", "7-9", "no_such_frames")),
-        *(("absent/p.%04d.png", None, "cannot_list"), ("/dev/null", None, "plate_is_pipe")),
+        *(("absent/p.%04d.png", None, "cannot_list"), ("/dev/null", None, "not_a_file")),
     ],
 )
 def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
