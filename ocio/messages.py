@@ -7,6 +7,7 @@ SENTENCES: Mapping[str, str] = {
     "dolby_vision": "{path}: is Dolby Vision of profile {profile}, which only its own decoder shows; give one in SDR",
     "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
+    "movie_form": "{path}: holds {form}, which are not read here; extract its frames: {line}",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
     " {line} (leave out its filter if both fields show the same moment)",
     "movie_too_large": "{path}: its frames have more than {megapixels} megapixels; scale it, or extract them: {line}",

@@ -18,8 +18,8 @@ from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
-from .library import ffmpeg_line, opened
-from .stream import MovieStream, Picture, decoded_packet, is_shown, packets_of, read_stream
+from .library import decoded_packet, ffmpeg_line, is_shown, opened, packets_of
+from .stream import MovieStream, Picture, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame
