@@ -141,12 +141,14 @@ class _Conversion:
             write_exr(temporary, header, pixels, name=target)
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:
-        """Return a plate, which must have the primaries of the first."""
+        """Return a plate, which must have the primaries of the first, and must not be linear, either."""
         if self.first is None:
             return load()
         if position == self.first.position:
             return self.first.frame
         frame = load()
+        if not self.options.is_encoded:
+            refuse_linear(frame.color, path)
         primaries = plate_primaries(frame.color, self.options.primaries)
         check_same_primaries(path, primaries, self.first.path, self.light.plate)
         return frame

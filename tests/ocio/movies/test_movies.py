@@ -39,6 +39,8 @@ MOVIES = {
     "negative times": ("a.mkv", 24, {"times": range(-12, 12)}),
     "equal times": ("a.mkv", 12, {"codec": "ffv1", "times": [number // 2 for number in range(12)]}),
     "uneven times": ("a.mp4", 12, {"times": [number * number for number in range(12)]}),
+    "bare av1": ("a.obu", 6, {"codec": "libsvtav1"}),
+    "real media": ("a.rm", 6, {"codec": "rv20", "size": (176, 144), "options": INTRA}),
 }
 
 
@@ -83,6 +85,46 @@ def test_theora_is_read(movie, tmp_path):
     run_ffmpeg("-i", movie, "-c:v", "libtheora", "-q:v", 10, tmp_path / "a.ogv")
     assert is_movie(tmp_path / "a.ogv")
     assert bars(MovieFrames.find(tmp_path / "a.ogv")) == list(range(1, 25))
+
+
+def copied(source, target, timed, **options):
+    """Copy the packets of a movie that `timed` returns with other times; it gets each with its number, from 0."""
+    with av.open(str(source)) as old, av.open(str(target), "w", options=options) as new:
+        stream = new.add_stream_from_template(old.streams.video[0])
+        for number, packet in enumerate(packet for packet in old.demux(video=0) if packet.size):
+            if timed(number, packet):
+                packet.stream = stream
+                new.mux(packet)
+    return MovieFrames.find(target)
+
+
+def test_a_copy_with_the_times_of_decoding_has_all_frames_in_order(tmp_path):
+    """As FFmpeg copies AVI and bare streams into MP4, and as some programs write MXF."""
+
+    def timed(number, packet):
+        packet.pts = packet.dts = 512 * number
+        return True
+
+    assert bars(copied(write_movie(tmp_path / "a.mp4", 24, options=B_FRAMES), tmp_path / "b.mp4", timed)) == [
+        *range(1, 25)
+    ]
+
+
+def test_matroska_that_begins_with_pictures_before_its_first_key_frame_is_counted_without_them(tmp_path):
+    """They have times below zero, which it cannot hold, and refer to pictures that a cut has taken away."""
+    begins = []
+
+    def timed(number, packet):
+        begins.extend([packet.pts] if packet.is_keyframe and number else [])
+        if begins:
+            packet.pts, packet.dts = packet.pts - begins[0], packet.dts - begins[0]
+        return begins
+
+    options = {"x264-params": "open-gop=1:keyint=8:bframes=3:b-adapt=0"}
+    movie = write_movie(tmp_path / "a.mp4", 24, options=options)
+    frames = copied(movie, tmp_path / "b.mkv", timed, avoid_negative_ts="disabled")
+    assert bars(frames) == [*range(9, 25)]
+    assert frames.movie.key_numbers == (1, 9)
 
 
 @pytest.mark.parametrize("name", ["h264", "hevc 10 bits", "transport stream"])
