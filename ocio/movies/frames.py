@@ -101,21 +101,19 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
     clock, last = 0, None  # and the time in the file; whenever it runs back, another one begins
     damaged_from = inf  # the place of the first damage since the last key frame
     for place, packet in enumerate(packets_of(container, stream)):
-        if packet is None:
-            if stream.codec_context.has_b_frames:
-                return  # decoders leave out others, too: the later ones have no number
-            damaged_from = min(damaged_from, place)
-            yield None
-            continue
-        if packet.dts is not None:
-            clock, last = clock + (last is not None and packet.dts < last), packet.dts
-        time = packet.pts if movie.start > -inf else None
-        if time is not None and is_shown(packet) and (clock or time >= movie.start):
-            insort(pending, (clock, time, place))
-        frames, is_damaged = decoded_packet(stream, packet)
+        frames, is_damaged, time = [], True, None
+        if packet is not None:
+            if packet.dts is not None:
+                clock, last = clock + (last is not None and packet.dts < last), packet.dts
+            time = packet.pts if movie.start > -inf else None
+            if time is not None and is_shown(packet) and (clock or time >= movie.start):
+                insort(pending, (clock, time, place))
+            frames, is_damaged = decoded_packet(stream, packet)
         if is_damaged:
             damaged_from = min(damaged_from, place)
         if is_damaged and not frames and time is None:
+            if stream.codec_context.has_b_frames:
+                return  # decoders leave out others, too: the later ones have no number
             yield None
         for frame in frames:
             times = [time for _, time, _ in pending]

@@ -191,13 +191,16 @@ def test_damage_fails_up_to_the_next_key_frame_and_the_others_keep_their_numbers
 
 
 @pytest.mark.parametrize(
-    ("codec", "options", "last"),
-    [("ffv1", {"g": "1"}, 11), ("mpeg4", {"g": "8", "bf": "0"}, 16), ("mpeg4", {"g": "8", "bf": "2"}, 24)],
+    ("codec", "options", "head", "last"),
+    [
+        *[("ffv1", {"g": "1"}, 8, 11), ("mpeg4", {"g": "8", "bf": "0"}, 8, 16)],
+        *[("mpeg4", {"g": "8", "bf": "2"}, head, 24) for head in (8, 0)],
+    ],
 )
-def test_an_avi_frame_whose_head_is_damaged_fails_and_the_others_keep_their_numbers(tmp_path, codec, options, last):
-    """With frames that are shown later than others behind them, FFmpeg leaves out more than the one it does not see."""
+def test_an_avi_frame_that_is_not_seen_fails_and_the_others_keep_their_numbers(tmp_path, codec, options, head, last):
+    """Its head is damaged, or all but this; FFmpeg leaves out other frames, too, if some refer to later ones."""
     path = write_movie(tmp_path / "a.avi", 24, codec=codec, options={"qmin": "1", "qmax": "1", **options})
-    shown = bars(MovieFrames.find(damage(path, 11, end=0, before=8)))
+    shown = bars(MovieFrames.find(damage(path, 11, end=not head, before=head)))
     assert shown[last:] == [*range(last + 1, 25)]
     assert (shown[:8], shown[10:last], len(shown)) == ([*range(1, 9)], [None] * (last - 10), 24)
 
