@@ -99,6 +99,7 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
     """
     pending: list[tuple[int, int, int]] = []  # the frames to come, in the order shown: clock, time, place in the file
     clock, last = 0, None  # and the time in the file; whenever it runs back, another one begins
+    frames: list[VideoFrame]
     damaged_from = inf  # the place of the first damage since the last key frame
     for place, packet in enumerate(packets_of(container, stream)):
         frames, is_damaged, time = [], True, None

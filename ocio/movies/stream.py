@@ -86,11 +86,16 @@ class Picture:
 
     @classmethod
     def from_frame(cls, path: Path, frame: VideoFrame, codec: str, container: ColorCodes) -> Picture:
-        """Return the form of a decoded frame; raise a PlateError if its samples are not read."""
-        codes = stated_codes(frame, container)
+        """Return the form of a frame, by its or its container's codes; raise a PlateError if its samples are not read."""
+        stated = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
+        codes = tuple(other if own == none else own for own, other, none in stated)  # ProRes has them in the container
         coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])
         if coding is None:
-            raise _unread(path, frame, codes[0])
+            form = f"pixels of {frame.format.name}, matrix {codes[0]} of H.273"
+            filters = (
+                ("zscale=matrix=gbr", "format=gbrp16") if codes[0] > UNSPECIFIED[0] else ()
+            )  # else FFmpeg's BT.601
+            raise PlateError("movie_form", path=path, form=form, line=ffmpeg_line(path, *filters))
         turn, tags = _turn(path, frame), cicp_tags(codes[2:])
         return cls(frame.width, frame.height, frame.format.name, coding, turn, frame.interlaced_frame, tags)
 
@@ -173,20 +178,6 @@ def read_stream(path: Path) -> MovieStream:
             raise undecodable(path, "it holds no frame")
         movie = _described(path, container, stream, packets, frame, codes)
         return replace(movie, frame_count=movie.frame_count + is_cut, is_cut=is_cut)
-
-
-def stated_codes(frame: VideoFrame, container: ColorCodes) -> ColorCodes:
-    """Return the code points of a frame, or of its container where the frame has none, as in ProRes."""
-    codes = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
-    return tuple(other if own == none else own for own, other, none in codes)
-
-
-def _unread(path: Path, frame: VideoFrame, matrix: int) -> PlateError:
-    """Return the error of a frame whose samples are not read; FFmpeg's own scaler does not know every matrix."""
-    is_of_matrix = Coding.from_frame(frame, is_still=False, codes=(UNSPECIFIED[0], 0)) is not None
-    filters = ("zscale=matrix=gbr", "format=gbrp16") if is_of_matrix else ()
-    form = f"pixels of {frame.format.name}, matrix {matrix} of H.273"
-    return PlateError("movie_form", path=path, form=form, line=ffmpeg_line(path, *filters))
 
 
 def _color_codes(source: Any) -> ColorCodes:
