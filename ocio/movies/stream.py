@@ -86,7 +86,7 @@ class Picture:
 
     @classmethod
     def from_frame(cls, path: Path, frame: VideoFrame, codec: str, container: ColorCodes) -> Picture:
-        """Return the form of a frame, by its or its container's codes; raise a PlateError if its samples are not read."""
+        """Return the form of a decoded frame; raise a PlateError if its samples are not read."""
         stated = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
         codes = tuple(other if own == none else own for own, other, none in stated)  # ProRes has them in the container
         coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])

@@ -106,6 +106,28 @@ def test_movies_are_known_by_their_first_bytes(tmp_path, head):
     assert is_movie(tmp_path / "a")
 
 
+@pytest.mark.parametrize(
+    ("name", "codec", "form"),
+    [("a.mp4", "libx264", "yuv420p"), ("a.mov", "png", "rgb24"), ("a.mkv", "ffv1", "yuv420p")],
+)
+def test_a_movie_of_too_large_frames_is_refused_before_one_is_decoded(tmp_path, monkeypatch, name, codec, form):
+    """FFmpeg itself decodes some to learn their form."""
+    path = write_movie(tmp_path / name, codec=codec, form=form)
+    read_stream(path)
+    monkeypatch.setattr("crfnet.movies.library.MOST_PIXELS", 128 * 96 - 1)
+    monkeypatch.setattr("crfnet.movies.stream.decoded_packet", None)
+    with refused(PlateError, "movie_too_large"):
+        read_stream(path)
+
+
+def test_opening_a_movie_of_many_empty_boxes_ends(tmp_path, monkeypatch):
+    movie = write_movie(tmp_path / "a.mp4")
+    movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
+    monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
+    with refused(PlateError, "movie_undecodable"):
+        read_stream(movie)
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
 def test_a_pipe_is_not_opened(tmp_path):
     """That would wait for a writer; here there is one, so that the test would not."""
