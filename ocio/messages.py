@@ -7,6 +7,7 @@ SENTENCES: Mapping[str, str] = {
     "dolby_vision": "{path}: is Dolby Vision of profile {profile}, which only its own decoder shows; give one in SDR",
     "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
+    "movie_form": "{path}: holds {form}, which are not read here; extract its frames: {line}",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
     " {line} (leave out its filter if both fields show the same moment)",
     "movie_too_large": "{path}: its frames have more than {megapixels} megapixels; scale it, or extract them: {line}",
@@ -38,7 +39,6 @@ SENTENCES: Mapping[str, str] = {
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
     "plate_is_pipe": "{path}: is a pipe or a device; give a file",
-    "encodings_differ": "{path}: is not tagged with the encoding of {first}; process each by itself",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
@@ -46,6 +46,7 @@ SENTENCES: Mapping[str, str] = {
     "single_file": "{path}: is a single file, which has no frames to choose from; give a pattern",
     "target_is_plate": "{path}: is one of the plates, which are never replaced; choose another name",
     "too_many_frames": "frames {frames!r}: more than {most} frames; give fewer",
+    "transfer_differs": "{path}: its transfer function is {transfer}, but {other} in {first}; process each by itself",
     "unknown_depth": "depth {depth!r} is unknown; choose half or float",
     "unknown_output_space": "output space {space!r} is unknown; choose one of {spaces}",
     "unknown_primaries": "primaries {primaries!r} are unknown; choose one of {choices}",

@@ -18,8 +18,8 @@ from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
-from .library import ffmpeg_line, opened
-from .stream import MovieStream, Picture, decoded_packet, is_shown, packets_of, read_stream
+from .library import decoded_packet, ffmpeg_line, is_shown, opened, packets_of
+from .stream import MovieStream, Picture, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -99,23 +99,22 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
     """
     pending: list[tuple[int, int, int]] = []  # the frames to come, in the order shown: clock, time, place in the file
     clock, last = 0, None  # and the time in the file; whenever it runs back, another one begins
+    frames: list[VideoFrame]
     damaged_from = inf  # the place of the first damage since the last key frame
     for place, packet in enumerate(packets_of(container, stream)):
-        if packet is None:
-            if stream.codec_context.has_b_frames:
-                return  # decoders leave out others, too: the later ones have no number
-            damaged_from = min(damaged_from, place)
-            yield None
-            continue
-        if packet.dts is not None:
-            clock, last = clock + (last is not None and packet.dts < last), packet.dts
-        time = packet.pts if movie.start > -inf else None
-        if time is not None and is_shown(packet) and (clock or time >= movie.start):
-            insort(pending, (clock, time, place))
-        frames, is_damaged = decoded_packet(stream, packet)
+        frames, is_damaged, time = [], True, None
+        if packet is not None:
+            if packet.dts is not None:
+                clock, last = clock + (last is not None and packet.dts < last), packet.dts
+            time = packet.pts if movie.start > -inf else None
+            if time is not None and is_shown(packet) and (clock or time >= movie.start):
+                insort(pending, (clock, time, place))
+            frames, is_damaged = decoded_packet(stream, packet)
         if is_damaged:
             damaged_from = min(damaged_from, place)
         if is_damaged and not frames and time is None:
+            if stream.codec_context.has_b_frames:
+                return  # decoders leave out others, too: the later ones have no number
             yield None
         for frame in frames:
             times = [time for _, time, _ in pending]

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import logging
+import re
 import shlex
+from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from io import BytesIO
 from itertools import islice
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +21,7 @@ from crfnet_core.photograph.image_io.file_kinds import AVIF_BRANDS, HEIC_BRANDS
 from ..errors import PlateError
 
 if TYPE_CHECKING:
+    from av import VideoFrame
     from av.container import InputContainer
     from av.video.stream import VideoStream
 
@@ -27,14 +31,15 @@ QUICKTIME_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot"
 #: Brands of files that begin like MP4 and hold still pictures: HEIF, AVIF, Canon's camera raw.
 STILL_BRANDS = (*HEIC_BRANDS, *AVIF_BRANDS, b"mif1", b"mif2", b"msf1", b"miaf", b"crx ")
 
-#: First bytes of other movies: Matroska, MXF, MPEG, Flash, Windows Media, Ogg, Y4M, IVF, NUT, and bare H.264 or HEVC.
-SIGNATURES = (
-    *(b"\x1a\x45\xdf\xa3", b"\x06\x0e\x2b\x34", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3", b"FLV\x01"),
-    *(b"\x30\x26\xb2\x75", b"OggS", b"YUV4MPEG2 ", b"DKIF", b"nut/multimedia", b"\x00\x00\x00\x01"),
+#: First bytes of other movies: Matroska, MXF, Flash, Windows Media, Ogg, Y4M, IVF, NUT, DV, RealMedia, Windows TV, GXF;
+#: bare AV1; and the start code of MPEG and of bare streams.
+SIGNATURES = re.compile(
+    rb"\x1a\x45\xdf\xa3|\x06\x0e\x2b\x34|FLV\x01|\x30\x26\xb2\x75|OggS|YUV4MPEG2 |DKIF|nut/multimedia|\x1f\x07\0|\.RMF"
+    rb"|\xb7\xd8\0\x20|\0{4}\x01\xbc|\x12\0\x0a|\0{2,3}\x01[^\0]"
 )
 
 #: Distances in bytes between the sync bytes of an MPEG transport stream, and the place of the first one.
-_TRANSPORT = ((188, 0), (192, 4))
+_TRANSPORT = ((188, 0), (192, 4), (204, 0))
 
 #: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display. And the seconds
 #: after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
@@ -42,6 +47,12 @@ IPT_PROFILE, OPENING = 5, 60
 
 #: Packets of video that distinguish a film from a thumbnail, or the pictures of chapters, in a stream of its own.
 FIRST_PACKETS = 24
+
+#: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
+MATROSKA, AVI = "matroska,webm", "avi"
+
+#: Words of the messages of FFmpeg's decoders about damage that they fill in.
+DAMAGE = ("CRC mismatch", "damaged", "error while decoding")
 
 #: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.
 MOST_PIXELS, _TOO_LARGE = 150_000_000, "exceeds specified max pixel count"
@@ -58,16 +69,17 @@ def is_movie(path: Path) -> bool:
         return not (head[4:8] == b"ftyp" and head[8:12] in STILL_BRANDS)
     if head.startswith(b"RIFF"):
         return head[8:12] == b"AVI "
-    return head.startswith(SIGNATURES) or any(
+    return bool(SIGNATURES.match(head)) or any(
         head[first::step].startswith(b"\x47\x47\x47") for step, first in _TRANSPORT
     )
 
 
-def ffmpeg_line(path: Path, *, filters: str = "") -> str:
+def ffmpeg_line(path: Path, *filters: str) -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
-    pattern, filtered = path.with_name(path.stem.replace("%", "_") + ".%04d.png"), ["-vf", filters] if filters else []
-    line = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
-    return shlex.join(line)
+    folder, filtered = Path(str(path.parent).replace("%", "%%")), ["-vf", ",".join(filters)] if filters else []
+    names = [str(path), str(folder / (path.stem.replace("%", "_") + ".%04d.png"))]
+    source, frames = (f"file:{name}" if ":" in name or name.startswith("-") else name for name in names)
+    return shlex.join(["ffmpeg", "-i", source, *filtered, "-fps_mode", "passthrough", "-pix_fmt", "rgb48be", frames])
 
 
 @contextmanager
@@ -112,6 +124,44 @@ def _film(path: Path, container: InputContainer) -> Any:
     best = container.streams.best("video")
     most = max(films, key=lambda each: counts[each.index])
     return best if best in films and 2 * counts[best.index] > counts[most.index] else most
+
+
+def packets_of(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
+    """Yield the packets of a movie, the last one empty; None for each frame of an AVI's index that is not found.
+
+    There a damaged head of a frame hides it, and the frames behind it have no time of their own.
+    """
+    is_avi = container.format.name == AVI
+    places = [entry.pos + 8 for entry in stream.index_entries if is_avi and entry.size]  # behind the heads
+    last = -inf
+    for packet in container.demux(stream):
+        place = inf if packet.pos is None else packet.pos
+        if last < 0 and place not in places:  # this is another file's index
+            places = []
+        yield from [None] * (bisect_left(places, place) - bisect_right(places, last))
+        last = place
+        yield packet
+
+
+def is_shown(packet: Any) -> bool:
+    """Return whether a packet holds a frame that is shown."""
+    return bool(packet.size) and not packet.is_discard
+
+
+def decoded_packet(stream: VideoStream, packet: Any) -> tuple[list[VideoFrame], bool]:
+    """Return the frames that a packet completes, None for the last ones, and whether it is damaged.
+
+    Containers mark parts that are cut or lost; decoders raise, or log damage and fill it in from other frames.
+    """
+    import av
+
+    with av.logging.Capture() as messages:
+        try:
+            frames = list(stream.decode(packet))
+        except av.FFmpegError:
+            return [], True
+    is_named = any(words in message for words in DAMAGE for _, _, message in messages)
+    return frames, is_named or bool(packet and packet.is_corrupt)
 
 
 @cache

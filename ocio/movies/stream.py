@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -21,7 +20,18 @@ from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
 from .cut_files import is_cut_short
-from .library import IPT_PROFILE, dolby_vision_profile, ffmpeg_line, opened, undecodable
+from .library import (
+    AVI,
+    IPT_PROFILE,
+    MATROSKA,
+    decoded_packet,
+    dolby_vision_profile,
+    ffmpeg_line,
+    is_shown,
+    opened,
+    packets_of,
+    undecodable,
+)
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -35,11 +45,13 @@ Entry: TypeAlias = tuple[float, bool]
 ColorCodes: TypeAlias = tuple[int, ...]
 UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 
-#: Words of the messages of FFmpeg's decoders about damage that they fill in, and of its demuxers about files cut short.
-DAMAGE, CUT = ("CRC mismatch", "damaged", "error while decoding"), ("partial file", "ended prematurely")
+#: Words of the messages of FFmpeg's demuxers about files that are cut short.
+CUT = ("partial file", "ended prematurely")
 
-#: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
-MATROSKA, AVI = "matroska,webm", "avi"
+#: Codecs whose frames state whether they hold two fields; for others the container counts. And the number of frames by
+#: which ascending times are found to be those of decoding: some programs copy AVI and bare streams into MP4 with these.
+FIELD_CODECS = ("h264", "hevc", "mpeg1video", "mpeg2video", "mpeg4", "vc1", "prores", "dnxhd")
+PROGRESSIVE, FIRST_FRAMES = 1, 32
 
 #: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full. Codecs as people
 #: know them; others by FFmpeg's name.
@@ -75,10 +87,15 @@ class Picture:
     @classmethod
     def from_frame(cls, path: Path, frame: VideoFrame, codec: str, container: ColorCodes) -> Picture:
         """Return the form of a decoded frame; raise a PlateError if its samples are not read."""
-        codes = stated_codes(frame, container)
+        stated = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
+        codes = tuple(other if own == none else own for own, other, none in stated)  # ProRes has them in the container
         coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])
         if coding is None:
-            raise undecodable(path, f"pixels of {frame.format.name}, matrix {codes[0]} of H.273")
+            form = f"pixels of {frame.format.name}, matrix {codes[0]} of H.273"
+            filters = (
+                ("zscale=matrix=gbr", "format=gbrp16") if codes[0] > UNSPECIFIED[0] else ()
+            )  # else FFmpeg's BT.601
+            raise PlateError("movie_form", path=path, form=form, line=ffmpeg_line(path, *filters))
         turn, tags = _turn(path, frame), cicp_tags(codes[2:])
         return cls(frame.width, frame.height, frame.format.name, coding, turn, frame.interlaced_frame, tags)
 
@@ -111,6 +128,7 @@ class MovieStream:
     key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
     container: ColorCodes  # of the container, which count where the frames do not state theirs
     start: float  # the time of the first frame, in the time base of its stream; -inf if times are unknown
+    is_interlaced: bool  # by its first frame or by the container
     is_cut: bool = False
 
     def __str__(self) -> str:
@@ -123,7 +141,7 @@ class MovieStream:
             str(self.picture.coding),
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
-            interlaced if self.picture.is_interlaced else "",
+            interlaced if self.is_interlaced else "",
             "the file is cut short: copy it again" if self.is_cut else "",
             "its alpha is left out" if hides_alpha else "",
         ]
@@ -139,8 +157,10 @@ class MovieStream:
 
 def check_progressive(movie: MovieStream) -> None:
     """Raise a PlateError if frames hold two fields: how they become one picture is the user's to choose."""
-    if movie.picture.is_interlaced:
-        line = ffmpeg_line(movie.path, filters="bwdif=send_frame")
+    if movie.is_interlaced:
+        matrix = "".join(filter(str.isalnum, movie.picture.coding.matrix.lower()))
+        conversion = () if matrix == "rgb" else (f"scale=in_color_matrix={matrix}",)  # FFmpeg takes BT.601 by default
+        line = ffmpeg_line(movie.path, "bwdif=send_frame", *conversion)
         raise PlateError("movie_interlaced", path=movie.path, line=line)
 
 
@@ -160,50 +180,6 @@ def read_stream(path: Path) -> MovieStream:
         return replace(movie, frame_count=movie.frame_count + is_cut, is_cut=is_cut)
 
 
-def packets_of(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
-    """Yield the packets of a movie, the last one empty; None for each frame of an AVI's index that is not found.
-
-    There a damaged head of a frame hides it, and the frames behind it have no time of their own.
-    """
-    is_avi = container.format.name == AVI
-    places = [entry.pos + 8 for entry in stream.index_entries if is_avi and entry.size]  # behind the heads
-    last = -inf
-    for packet in container.demux(stream):
-        place = inf if packet.pos is None else packet.pos
-        if last < 0 and place not in places:  # this is another file's index
-            places = []
-        yield from [None] * (bisect_left(places, place) - bisect_right(places, last))
-        last = place
-        yield packet
-
-
-def is_shown(packet: Any) -> bool:
-    """Return whether a packet holds a frame that is shown."""
-    return bool(packet.size) and not packet.is_discard
-
-
-def decoded_packet(stream: VideoStream, packet: Any) -> tuple[list[VideoFrame], bool]:
-    """Return the frames that a packet completes, None for the last ones, and whether it is damaged.
-
-    Containers mark parts that are cut or lost; decoders raise, or log damage and fill it in from other frames.
-    """
-    import av
-
-    with av.logging.Capture() as messages:
-        try:
-            frames = list(stream.decode(packet))
-        except av.FFmpegError:
-            return [], True
-    is_named = any(words in message for words in DAMAGE for _, _, message in messages)
-    return frames, is_named or bool(packet and packet.is_corrupt)
-
-
-def stated_codes(frame: VideoFrame, container: ColorCodes) -> ColorCodes:
-    """Return the code points of a frame, or of its container where the frame has none, as in ProRes."""
-    codes = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
-    return tuple(other if own == none else own for own, other, none in codes)
-
-
 def _color_codes(source: Any) -> ColorCodes:
     """Return the code points of a frame or of a codec's context."""
     return int(source.colorspace), int(source.color_range), int(source.color_primaries), int(source.color_trc)
@@ -213,21 +189,35 @@ def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry]
     """Return the entries of all frames in the order of the file, the first frame, and the errors of the container."""
     import av
 
-    packets, first = [], None
+    packets, first, context = [], None, stream.codec_context
+    times: list[float] = []  # of the first frames that are decoded
+    unknown = -inf if container.format.name == MATROSKA else nan  # as it cannot hold times below zero
     with av.logging.Capture() as messages:
         for packet in packets_of(container, stream):
             if packet is None:
                 packets.append((nan, False))
                 continue
-            if first is None:
-                first = next(iter(decoded_packet(stream, packet)[0]), None)
+            is_doubtful = context.has_b_frames and len(times) < FIRST_FRAMES and _ascend(time for time, _ in packets)
+            if first is None or is_doubtful:
+                frames, _ = decoded_packet(stream, packet)
+                first = first or next(iter(frames), None)
+                times += [nan if frame.pts is None else frame.pts for frame in frames]
             if is_shown(packet):
-                packets.append((nan if packet.pts is None else packet.pts, packet.is_keyframe))
+                packets.append((unknown if packet.pts is None else packet.pts, packet.is_keyframe))
+    if container.format.name == AVI or not _ascend(times):
+        packets = [(nan, is_key) for _, is_key in packets]
     return packets, first, [one_line(message) for _, name, message in messages if name == container.format.name]
+
+
+def _ascend(times: Iterable[float]) -> bool:
+    """Return whether each time is later than the one before."""
+    return all(time < later for time, later in pairwise(times))
 
 
 def _start(packets: Sequence[Entry], first: VideoFrame) -> float:
     """Return the time of the first frame: pictures that refer to others before the first key frame have none."""
+    if all(isnan(time) for time, _ in packets):
+        return -inf
     times = [next((time for time, is_key in packets if is_key), nan), nan if first.pts is None else first.pts]
     return min((time for time in times if not isnan(time)), default=-inf)
 
@@ -251,10 +241,11 @@ def _described(
 ) -> MovieStream:
     """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
-    start = -inf if container.format.name == AVI else _start(packets, frame)
+    start = _start(packets, frame)
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     end = keys[1] if len(keys) > 1 else len(packets)  # from there on, the clock may run back
     packets = [entry for entry in packets[:end] if not entry[0] < start] + packets[end:]
+    field_order: Any = stream.codec_context.field_order
     parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
     metadata = {key.lower(): value for part in parts for key, value in part.items()}
     picture = Picture.from_frame(path, frame, codec, codes)
@@ -265,13 +256,14 @@ def _described(
         picture=picture,
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
-        rate=Fraction(stream.average_rate or 0),
+        rate=Fraction(min(filter(None, (stream.average_rate, stream.base_rate)), default=0)),  # of DV, 60000 and 25
         color=_color_tags(picture.tags, metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
         container=codes,
         start=start,
+        is_interlaced=picture.is_interlaced or (codec not in FIELD_CODECS and field_order > PROGRESSIVE),
     )
 
 
@@ -296,5 +288,5 @@ def _turn(path: Path, frame: VideoFrame) -> Turn:
         return UPRIGHT
     values = np.frombuffer(matrix, np.int32)[[0, 1, 3, 4]] / 65536
     a, b, c, d = (round(float(value)) for value in values)
-    is_quarter = bool(np.allclose(values, (a, b, c, d), atol=0.01)) and abs(a * d - b * c) == 1
-    return (a, b, c, d) if is_quarter else UPRIGHT
+    is_turn = abs(a * d - b * c) == abs(a) + abs(b) == abs(c) + abs(d) == 1
+    return (a, b, c, d) if is_turn and np.allclose(values, (a, b, c, d), atol=0.01) else UPRIGHT

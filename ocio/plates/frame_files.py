@@ -15,7 +15,6 @@ from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message
 from crfnet_core.photograph.image_io.header_checks import channel_names, text_attribute
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
-from crfnet_core.photograph.recognition import refuse_linear
 from crfnet_core.response.curve import MOST_BRIGHTNESS
 from crfnet_core.types import Float32Array
 
@@ -85,14 +84,12 @@ def frame_path(sequence: FrameSource, position: int) -> Path:
 def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | None = None) -> EncodedFrame:
     """Return the encoded samples of one frame: of a file that `read_photo` can read, or of OpenEXR with encoded values.
 
-    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated`: whether
-    the samples are divided by alpha, by default as the file says. Raises as `read_photo` does, or a PlateError.
+    `is_encoded` accepts OpenEXR that does not state its encoding. `is_associated`: whether the samples are divided by
+    alpha, by default as the file says. Raises as `read_photo` does, or a PlateError.
     """
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
     values = read_codes(path)
-    if not is_encoded:
-        refuse_linear(values.metadata.color, path)
     alpha = None
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)

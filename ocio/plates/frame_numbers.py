@@ -1,5 +1,6 @@
 """Frame numbers in words: ranges such as 1-9x2, read by Fileseq, which the Blender add-on does without."""
 
+import re
 from collections.abc import Collection, Iterable, Sequence
 from operator import index
 from typing import Any
@@ -19,7 +20,7 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
 
     numbers: Collection[Any] = ()
     try:
-        if frames.isascii() and all(frames.split(",")):
+        if frames.isascii() and all(frames.split(",")) and not re.search(r"\d\s+\d", frames):  # 1 2 would be 12
             numbers = FrameSet(frames)
     except MaxSizeException:
         numbers = range(MAX_FRAMES + 1)

@@ -141,16 +141,17 @@ class _Conversion:
             write_exr(temporary, header, pixels, name=target)
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:
-        """Return a plate, which must have the primaries and the encoding of the first, as tagged."""
+        """Return a plate, which must have the primaries and the transfer function of the first."""
         if self.first is None:
             return load()
         if position == self.first.position:
             return self.first.frame
         frame = load()
+        tagged, first = (color.transfer or "unknown" for color in (frame.color, self.first.frame.color))
+        if tagged != first and not self.options.is_encoded:
+            raise PlateError("transfer_differs", path=path, transfer=tagged, first=self.first.path.name, other=first)
         primaries = plate_primaries(frame.color, self.options.primaries)
         check_same_primaries(path, primaries, self.first.path, self.light.plate)
-        if frame.color.transfer != self.first.frame.color.transfer and not self.options.is_encoded:
-            raise PlateError("encodings_differ", path=path, first=self.first.path.name)
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:

@@ -1,6 +1,7 @@
 """Options that several subcommands of `crfnet` have, and the types of their values."""
 
 import argparse
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn, TypeAlias
@@ -126,6 +127,7 @@ def add_plate(parser: argparse.ArgumentParser) -> None:
 
 def add_frames(parser: argparse.ArgumentParser, each: str) -> None:
     """Add --frames, and --each, which a text explains, with its workers."""
+    parser._negative_number_matcher = re.compile(r"-\.?\d")  # not the whole word: --frames -3--1
     add_text(parser, "--frames", "SPEC", "frames, such as 1001-1100 or 1-99x2 (default: all)")
     add_flag(parser, "--each", each)
     workers = "with --each: processes at a time (default: one per core)"

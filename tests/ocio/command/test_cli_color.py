@@ -133,7 +133,7 @@ class TestPrimaries:
         each = ("--each", "--overwrite", "--no-linear", "--workers", "1")
         assert estimate(plate, other, *each).code == 0
 
-    @pytest.mark.parametrize("words", ["its primaries are Rec.709", "is not tagged with the encoding of shot.1.tif"])
+    @pytest.mark.parametrize("words", ["its primaries are Rec.709", "its transfer function is PQ"])
     def test_a_frame_of_other_primaries_or_another_encoding_fails(self, crfnet, tagged, lut_file, tmp_path, words):
         pq = matrix_profile(DISPLAY_P3, cicp=b"cicp" + bytes(4) + bytes([12, 16, 0, 1]))
         other = matrix_profile(REC709) if "Rec.709" in words else pq

@@ -95,7 +95,37 @@ def test_what_is_not_a_movie(tmp_path):
         write_image(tmp_path / name, np.zeros((8, 8, 3), np.uint8))
     (tmp_path / "a.heic").write_bytes(b"\0\0\0\x18ftypheic\0\0\0\0mif1heic")
     (tmp_path / "empty.mp4").write_bytes(b"")
+    (tmp_path / "a.ico").write_bytes(b"\0\0\1\0\1\0")
     assert not any(is_movie(path) for path in (*tmp_path.iterdir(), tmp_path / "absent.mp4", tmp_path))
+
+
+@pytest.mark.parametrize("head", ["1f0700bf", "b7d80020", "0000000001bc", "000001b0", "00000167", "47" + 203 * "00"])
+def test_movies_are_known_by_their_first_bytes(tmp_path, head):
+    """DV, Windows TV, GXF, bare MPEG-4 and H.264, and a transport stream with error correction."""
+    (tmp_path / "a").write_bytes(600 * bytes.fromhex(head))
+    assert is_movie(tmp_path / "a")
+
+
+@pytest.mark.parametrize(
+    ("name", "codec", "form"),
+    [("a.mp4", "libx264", "yuv420p"), ("a.mov", "png", "rgb24"), ("a.mkv", "ffv1", "yuv420p")],
+)
+def test_a_movie_of_too_large_frames_is_refused_before_one_is_decoded(tmp_path, monkeypatch, name, codec, form):
+    """FFmpeg itself decodes some to learn their form."""
+    path = write_movie(tmp_path / name, codec=codec, form=form)
+    read_stream(path)
+    monkeypatch.setattr("crfnet.movies.library.MOST_PIXELS", 128 * 96 - 1)
+    monkeypatch.setattr("crfnet.movies.stream.decoded_packet", None)
+    with refused(PlateError, "movie_too_large"):
+        read_stream(path)
+
+
+def test_opening_a_movie_of_many_empty_boxes_ends(tmp_path, monkeypatch):
+    movie = write_movie(tmp_path / "a.mp4")
+    movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
+    monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
+    with refused(PlateError, "movie_undecodable"):
+        read_stream(movie)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")

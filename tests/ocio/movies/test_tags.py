@@ -1,14 +1,17 @@
+import shlex
 import struct
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from crfnet.errors import PlateError
 from crfnet.movies.frames import MovieFrames
-from crfnet.movies.stream import read_stream
+from crfnet.movies.stream import check_progressive, read_stream
 from crfnet_core.colorimetry import REC2020
 from crfnet_core.photograph.metadata import file_origin
-from tests.helpers.movies import write_movie
+from tests.helpers.images import read_image, write_image
+from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 from tests.helpers.refusals import refused
 
 
@@ -72,6 +75,34 @@ def test_the_container_counts_where_frames_have_no_tags(tmp_path):
     movie = read_stream(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le", tags=tags))
     assert movie.picture.coding.matrix == "BT.2020"
     assert (movie.color.primaries, movie.color.transfer) == (REC2020, "PQ")
+
+
+@pytest.mark.parametrize(("codec", "is_interlaced"), [("huffyuv", True), ("prores_ks", False)])
+def test_the_container_counts_where_frames_do_not_say_whether_they_hold_two_fields(tmp_path, codec, is_interlaced):
+    path = write_movie(tmp_path / "a.mp4")
+    run_ffmpeg("-i", path, "-vf", "setfield=tff", "-field_order", "tt", "-c:v", codec, tmp_path / "a.mov")
+    assert read_stream(tmp_path / "a.mov").is_interlaced == is_interlaced
+
+
+@pytest.mark.parametrize(
+    ("code", "lines", "filters", "matrix"),
+    [
+        ("movie_interlaced", 96, "scale=out_color_matrix=bt601,setfield=tff", ""),
+        ("movie_interlaced", 720, "scale=out_color_matrix=bt709,setfield=tff", ""),
+        ("movie_form", 96, "zscale=matrixin=gbr:rangein=full:matrix=ycgco:range=limited", "ycgco"),
+    ],
+)
+def test_the_advised_line_of_ffmpeg_gives_the_colors_of_the_movie(tmp_path, code, lines, filters, matrix):
+    """Of itself FFmpeg takes BT.601 for any matrix that it does not know, and for an untagged movie."""
+    picture = next(pictures(1, (128, lines)))
+    write_image(tmp_path / "a.png", picture)
+    coding = ("-vf", filters, "-pix_fmt", "yuv444p", "-c:v", "ffv1", *(["-colorspace", matrix] if matrix else []))
+    run_ffmpeg("-i", tmp_path / "a.png", *coding, tmp_path / "a.mkv")
+    with pytest.raises(PlateError) as caught:
+        check_progressive(read_stream(tmp_path / "a.mkv"))
+    assert caught.value.code == code
+    run_ffmpeg(*shlex.split(caught.value.facts["line"])[1:])
+    assert np.abs(read_image(tmp_path / "a.0001.png") - picture / 255).mean() < 0.01
 
 
 @pytest.mark.parametrize(("codec", "form", "is_named"), [("libvpx-vp9", "yuv420p", True), ("ffv1", "yuva420p", False)])

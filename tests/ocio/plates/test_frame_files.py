@@ -1,4 +1,3 @@
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +10,8 @@ from crfnet.plates import frame_files
 from crfnet.plates.exr import linear_header
 from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.colorimetry import DISPLAY_P3
-from crfnet_core.errors import CRFNetError, PhotoError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.metadata.color_tags import ColorTags
-from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
@@ -122,14 +120,6 @@ def test_devices_are_not_opened(tmp_path, name, code):
     with refused(CRFNetError, code, path=tmp_path / name):
         read_frame(tmp_path / name, is_encoded=True)
     assert "device" in unreadable_reason(tmp_path / name)
-
-
-def test_a_file_tagged_linear_is_refused(tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(png(1, 1, bytes(4), chunks=png_chunk(b"gAMA", struct.pack(">I", 100_000))))
-    with refused(PhotoError, "tagged_linear"):
-        read_frame(path)
-    assert read_frame(path, is_encoded=True).largest == 255
 
 
 def test_an_exr_that_is_tagged_as_encoded_has_the_primaries_of_the_tag(tmp_path):

@@ -1,6 +1,7 @@
 """linearize_plates refuses what it cannot write, before it writes anything; a failed write leaves nothing."""
 
 import os
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.plates import exr
 from crfnet_core.errors import CRFNetError, PhotoError
+from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 from tests.helpers.plates import LUT, SMALL, linearize, write_sequence
@@ -29,6 +31,16 @@ def test_a_bad_single_plate_gives_its_own_error(tmp_path, out):
         with pytest.raises(PhotoError):
             linearize(tmp_path / name, out / "a.exr", LUT)
     assert tree(out) == {}
+
+
+@pytest.mark.parametrize(("number", "words"), [(1, "is linear already"), (2, "its transfer function is linear")])
+def test_a_frame_tagged_linear_is_refused(tmp_path, out, number, words):
+    plates, plate = write_sequence(tmp_path, (1, 2)), tmp_path / f"plate.{number:04d}.png"
+    plate.write_bytes(png(1, 1, bytes(4), chunks=png_chunk(b"gAMA", struct.pack(">I", 100_000))))
+    with pytest.raises(CRFNetError, match=words):
+        linearize(plates, out / "l.%04d.exr", LUT)
+    assert listed(out) == ["l.0001.exr"][: number - 1]
+    assert linearize(plate, out / "a.exr", LUT, is_encoded=True).written
 
 
 @pytest.mark.parametrize(
