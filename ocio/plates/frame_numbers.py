@@ -19,7 +19,7 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
 
     numbers: Collection[Any] = ()
     try:
-        if frames.isascii() and all(frames.split(",")):
+        if frames.isascii() and all(len(part.split()) == 1 for part in frames.split(",")):  # Fileseq reads 1 2 as 12
             numbers = FrameSet(frames)
     except MaxSizeException:
         numbers = range(MAX_FRAMES + 1)
