@@ -11,7 +11,7 @@ SENTENCES: Mapping[str, str] = {
     "bad_camera_name": "{name!r} cannot name a camera; it takes 1 to 60 letters, digits, spaces and signs of '.,+()-_,"
     " a letter or a digit first",
     "camera_exists": "{folder} has a camera {name!r} already",
-    "camera_folder": "{folder}: cannot be made ({reason}); set {variable} to another folder",
+    "camera_folder": "{folder}: cannot be used ({reason}); set {variable} to another folder",
     "camera_not_measured": "{path}: holds no measured response; measure the camera, or remove the file",
     "camera_not_removed": "{path}: cannot be removed ({reason})",
     "camera_version": "{path}: has camera_version {version}, needed is {needed}; update this program",

@@ -7,6 +7,7 @@ the disk before their names are. The folder holds a locked file, so others can s
 import errno
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -41,16 +42,21 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
     OPEN_SETS.add(temporary)
     try:
         yield temporary
+        if not _is_there(locked, temporary):  # in a folder that others may write to, they can put another in its place
+            raise error("not_written", path=folder, reason="another process has removed a temporary folder in it")
         _publish(temporary, folder, overwrite=overwrite, error=error)
     except CRFNetError as problem:
         problem.facts = {name: _renamed(fact, temporary, folder) for name, fact in problem.facts.items()}
         raise
     finally:
         OPEN_SETS.remove(temporary)
-        _remove(temporary, folder)
+        is_there = _is_there(locked, temporary)
+        if is_there:
+            _remove(temporary, folder)
         with suppress(OSError):
             locked.close()
-        _remove(temporary, folder)  # Windows removes no open file
+        if is_there and os.name == "nt":  # which removes no open file
+            _remove(temporary, folder)
 
 
 @lru_cache(maxsize=256)
@@ -61,7 +67,7 @@ def remove_abandoned(folder: Path) -> None:
     """
     for temporary in folder.glob(f"{_PREFIX}*"):
         with suppress(OSError, ValueError):
-            if temporary.is_symlink():
+            if not is_own_folder(temporary):
                 continue
             with (temporary / _LOCK).open("ab") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
@@ -71,6 +77,12 @@ def remove_abandoned(folder: Path) -> None:
                 _remove(temporary, folder)  # before the lock ends, so that nobody takes up a folder that is about to go
             if os.name == "nt":  # which removes no open file
                 _remove(temporary, folder)
+
+
+def is_own_folder(path: Path) -> bool:
+    """Return whether a path is a folder of this user, and not a link, or one that somebody else has put there."""
+    state = path.lstat()
+    return stat.S_ISDIR(state.st_mode) and (os.name == "nt" or state.st_uid == os.geteuid())
 
 
 def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:

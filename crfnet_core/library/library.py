@@ -68,8 +68,7 @@ class CameraLibrary:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as problem:
-            facts = {"folder": self.folder, "reason": problem.strerror, "variable": DATA_VARIABLE}
-            raise CameraError("camera_folder", **facts) from None
+            raise self._unusable(problem) from None
         atomic_write_text(path, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
         return path
 
@@ -88,12 +87,27 @@ class CameraLibrary:
         raise CameraError("no_camera", name=name, folders=self.folder)
 
     def _files(self) -> list[Path]:
-        """Return the library's files in the order of their names; files being written begin with a dot."""
-        return sorted(self.folder.glob("[!.]*.json"))
+        """Return the library's files in the order of their names; files being written begin with a dot.
+
+        Raise CameraError for a folder that this user may not read.
+        """
+        try:
+            return sorted(self.folder.glob("[!.]*.json"))
+        except OSError as problem:
+            raise self._unusable(problem) from None
+
+    def _unusable(self, problem: OSError) -> CameraError:
+        """Return the error of a folder that cannot be made or read."""
+        return CameraError("camera_folder", folder=self.folder, reason=problem.strerror, variable=DATA_VARIABLE)
 
     def _contents(self) -> Iterator[Camera | CameraError]:
         """Yield the camera in each file, or the reason why there is none."""
-        for path in self._files():
+        try:
+            files = self._files()
+        except CameraError as problem:
+            yield problem
+            return
+        for path in files:
             try:
                 yield read_camera(path)
             except CameraError as problem:

@@ -60,8 +60,8 @@ class Session:
         options, names = onnxruntime.RunOptions(), list(self._config.output_names)
         options.log_severity_level = _FATAL
         end = Timer(RUN_SECONDS, setattr, (options, "terminate", True))
+        end.start()
         try:
-            end.start()
             read = {self._config.input_name: inputs[:, : self._columns]}
             outputs: list[Float32Array] = self._session.run(names, read, options)
         except _PROBLEMS as problem:

@@ -1,4 +1,4 @@
-"""Signals that end a run: Control-C, and what a render farm or a closed terminal sends."""
+"""Signals that end a run: Control-C, and what a render farm, a closed terminal or a limit of time sends."""
 
 import signal
 import threading
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 #: The signals, as far as the system has them.
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGXCPU", "SIGUSR1", "SIGUSR2")
 
 
 @contextmanager

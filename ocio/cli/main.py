@@ -17,6 +17,7 @@ from .streams import complete_streams, own_stderr, shown
 UNEXPLAINED: dict[type[BaseException], str] = {
     MemoryError: "not enough memory; close something or give fewer photographs",
     UnicodeEncodeError: "a file's name is not valid Unicode; rename it",
+    RuntimeError: "the system starts no more threads; close something, or raise its limit of processes",
 }
 
 
@@ -31,6 +32,10 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _run(build_parser().parse_args(argv), sys.argv if argv is None else argv)
         except OSError as problem:  # of --help
             return _fail(problem)
+        except ImportError as problem:  # without the core, which may be what cannot be loaded
+            reason = " ".join(str(problem).split())
+            _print_error(f"crfnet: error: {reason}; clear PYTHONPATH, install crfnet again, or give it more memory")
+            return BAD_INPUT
         except BaseException as problem:  # an interrupted import raises all sorts of errors
             if not caught and not isinstance(problem, KeyboardInterrupt):
                 raise
@@ -47,7 +52,9 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
         "".join(argv).encode()  # refuses file names that are not valid Unicode
         code = import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
-    except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
+    except (CRFNetError, OSError, MemoryError, UnicodeError, RuntimeError) as problem:
+        if isinstance(problem, RuntimeError) and "new thread" not in str(problem):
+            raise  # of a bug
         return _fail(problem)
     return code or 0
 
@@ -61,7 +68,8 @@ def _fail(problem: BaseException) -> int:
 
     from .remedies import explained
 
-    text = explained(problem) if isinstance(problem, CRFNetError) else UNEXPLAINED.get(type(problem), str(problem))
+    unexplained = (text for kind, text in UNEXPLAINED.items() if isinstance(problem, kind))
+    text = explained(problem) if isinstance(problem, CRFNetError) else next(unexplained, str(problem))
     if isinstance(problem, OSError) and problem.strerror:
         text = f"{problem.filename or 'the output'}: {problem.strerror}; check the name, the folder and the disk"
     _print_error(f"crfnet: error: {one_line(text)}")

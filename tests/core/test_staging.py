@@ -144,12 +144,39 @@ def test_an_earlier_file_that_cannot_go_back_stays_where_it_is(tmp_path, monkeyp
     assert content(earlier) == {"a.txt": "old"}
 
 
-@pytest.mark.skipif(os.name == "nt", reason="needs links")
-def test_a_link_is_not_taken_for_the_folder_of_a_killed_run(tmp_path):
+@pytest.fixture
+def secret(tmp_path):
+    """A folder elsewhere, with a file that somebody else would like to have."""
     (tmp_path / "elsewhere").mkdir()
-    (tmp_path / ".crfnet-link").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "elsewhere" / "key").write_text("secret")
+    return tmp_path / "elsewhere"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs links")
+@pytest.mark.parametrize("name", [".crfnet-link", ".crfnet-killed/.crfnet-earlier-1"])
+def test_nothing_of_others_is_taken_for_the_folder_of_a_killed_run(tmp_path, secret, monkeypatch, name):
+    """Neither a link nor another user's folder: in a shared folder it could take away our files from elsewhere."""
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).symlink_to(secret)
+    user = os.geteuid()
+    monkeypatch.setattr(os, "geteuid", lambda: user + 1)
     remove_abandoned(tmp_path)
-    assert list((tmp_path / "elsewhere").iterdir()) == []
+    assert content(secret) == {"key": "secret"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs links")
+def test_a_folder_that_others_have_put_in_the_place_of_the_temporary_one_is_left_alone(tmp_path, secret):
+    (tmp_path / "out").mkdir()
+
+    def exchange():
+        with staged_files(tmp_path / "out") as staged:
+            staged.rename(tmp_path / "ours")
+            staged.symlink_to(secret)
+
+    with refused(CRFNetError, "not_written"):
+        exchange()
+    assert content(secret) == {"key": "secret"}
+    assert [path.is_symlink() for path in (tmp_path / "out").iterdir()] == [True]
 
 
 STAGE = """

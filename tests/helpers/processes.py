@@ -16,5 +16,5 @@ def start_interruptible(command, **options):
 
 def _restore_signals():
     """Let the signals do in this process what they do by default."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_DFL)

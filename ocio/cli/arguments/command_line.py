@@ -1,10 +1,9 @@
 """The whole command line of `crfnet`; `parts` has the options that subcommands share."""
 
 import argparse
-from pathlib import Path
 
 from . import parts
-from .parts import Commands, Parser, written_path
+from .parts import Commands, Parser, given, given_path
 
 #: The help of --no-sheet.
 NO_SHEET = "do not draw the sheet, the picture of the result"
@@ -104,7 +103,7 @@ def _add_estimate(commands: Commands) -> None:
     summary = "estimate the response of the camera that took a photograph"
     parser = parts.add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
     photos = "photograph, movie, or sequence such as shot.%%04d.png"
-    parser.add_argument("photos", nargs="+", type=Path, metavar="PHOTO", help=photos)
+    parser.add_argument("photos", nargs="+", type=given_path, metavar="PHOTO", help=photos)
     parts.add_out(parser, "DIR", "folder for all files")
     parts.add_frames(parser, "estimate one response for each photograph, not one for all; PHOTO may be a folder")
     parts.add_flag(parser, "--forward", "also write the response itself as a LUT, from light to code values")
@@ -120,10 +119,10 @@ def _add_linearize(commands: Commands) -> None:
     parser = parts.add_command(commands, "linearize", summary, LINEARIZE_EXAMPLES)
     plates = "photograph, movie, folder with one sequence, or sequence such as shot.%%04d.png or shot.####.png"
     each = "; with --each photographs and folders"
-    parser.add_argument("plates", nargs="+", metavar="PLATES", help=plates + each)
+    parser.add_argument("plates", nargs="+", type=given, metavar="PLATES", help=plates + each)
     parts.add_out(parser, "PATTERN", "EXR file; for a sequence a name such as l.%%04d.exr; with --each a folder")
     lut = "response to use: a 1D LUT of any format that OpenColorIO reads"
-    parser.add_argument("--lut", type=Path, metavar="FILE", help=lut)
+    parser.add_argument("--lut", type=given_path, metavar="FILE", help=lut)
     parts.add_frames(parser, "PLATES are photographs, each with its own response without --lut and --camera")
     parts.add_flag(parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values")
     parts.add_network(parser)
@@ -135,12 +134,12 @@ def _add_calibrate(commands: Commands) -> None:
     summary = "measure a camera's response from an exposure stack, or from raw files and their JPEGs"
     parser = parts.add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
     files = "frames of a stack; or raw files, their JPEGs, folders of both"
-    parser.add_argument("photos", nargs="+", type=Path, metavar="FILE", help=files)
+    parser.add_argument("photos", nargs="+", type=given_path, metavar="FILE", help=files)
     parts.add_out(parser, "DIR", "folder for all files")
     parts.add_text(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
     parts.add_text(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: EXIF)")
     compare = "response to compare with the measured one: the JSON of an estimate, or a LUT"
-    parser.add_argument("--compare", type=Path, metavar="FILE", help=compare)
+    parser.add_argument("--compare", type=given_path, metavar="FILE", help=compare)
     parts.add_flag(parser, "--accept-edited", "accept files that a program has edited: the response is the program's")
     parts.add_flag(parser, "--no-sheet", NO_SHEET)
     parts.add_flag(parser, "--overwrite", parts.OVERWRITE)
@@ -154,7 +153,7 @@ def _add_camera(commands: Commands) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     addition = parts.add_action(actions, "add", "store a measured response")
     calibration = "the JSON file of crfnet calibrate, or of crfnet camera export"
-    addition.add_argument("--from-calibration", type=Path, required=True, metavar="FILE", help=calibration)
+    addition.add_argument("--from-calibration", type=given_path, required=True, metavar="FILE", help=calibration)
     parts.add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
     parts.add_flag(addition, "--overwrite", "replace the camera of this name")
     parts.add_action(actions, "list", "list your cameras and the packaged ones")
@@ -162,8 +161,8 @@ def _add_camera(commands: Commands) -> None:
     remove = parts.add_action(actions, "remove", "remove one of your cameras")
     export = parts.add_action(actions, "export", "write the response of a camera to a file")
     for action in (show, remove, export):
-        action.add_argument("name", metavar="NAME", help="the camera")
-    export.add_argument("out", type=written_path, metavar="OUT", help="a LUT file, or .json to hand the camera on")
+        action.add_argument("name", type=given, metavar="NAME", help="the camera")
+    export.add_argument("out", type=given_path, metavar="OUT", help="a LUT file, or .json to hand the camera on")
     parts.add_flag(export, "--overwrite", parts.OVERWRITE)
 
 
@@ -174,16 +173,18 @@ def _add_config(commands: Commands) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     addition = parts.add_action(actions, "add", "write a new config: CONFIG with the color spaces of plates")
     looks = "folder, JSON or LUT of crfnet estimate"
-    addition.add_argument("looks", nargs="+", type=Path, metavar="ESTIMATE", help=looks)
-    addition.add_argument("--base", required=True, metavar="CONFIG", help="config to build on; it is not changed")
+    addition.add_argument("looks", nargs="+", type=given_path, metavar="ESTIMATE", help=looks)
+    addition.add_argument(
+        "--base", type=given, required=True, metavar="CONFIG", help="config to build on; it is not changed"
+    )
     parts.add_out(addition, "FOLDER", "folder for config.ocio and the LUTs")
     parts.add_flag(addition, "--overwrite", parts.OVERWRITE)
     listing = parts.add_action(actions, "list", "list the plates of a config")
-    listing.add_argument("config", metavar="CONFIG", help="config with plates")
+    listing.add_argument("config", type=given, metavar="CONFIG", help="config with plates")
 
 
 def _add_info(commands: Commands) -> None:
     """Add `crfnet info`."""
     parser = parts.add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
-    parser.add_argument("lut", type=Path, metavar="FILE", help="LUT that OpenColorIO reads")
+    parser.add_argument("lut", type=given_path, metavar="FILE", help="LUT that OpenColorIO reads")
     parts.add_json(parser)

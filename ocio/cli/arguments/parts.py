@@ -66,12 +66,12 @@ def add_flag(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:
 
 def add_text(parser: argparse.ArgumentParser, name: str, metavar: str, meaning: str) -> None:
     """Add an option with any text as its value."""
-    parser.add_argument(name, metavar=metavar, help=meaning)
+    parser.add_argument(name, type=given, metavar=metavar, help=meaning)
 
 
 def add_out(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> None:
     """Add --out."""
-    parser.add_argument("--out", type=written_path, required=True, metavar=metavar, help=meaning)
+    parser.add_argument("--out", type=given_path, required=True, metavar=metavar, help=meaning)
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
@@ -88,9 +88,10 @@ def add_choice(parser: argparse.ArgumentParser, name: str, choices: Sequence[str
 def add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
     model = "crfnet2017, the method of the paper; or the folder of a model"
-    parser.add_argument("--model", type=Path, metavar="MODEL", help=model)
+    parser.add_argument("--model", type=given_path, metavar="MODEL", help=model)
     parser.add_argument(
         "--prior",
+        type=given,
         default=PRIORS[0],
         metavar="|".join((*PRIORS, "FILE")),
         help=f"responses to expect: today's cameras, any source (with film and old video), or shares in a JSON file"
@@ -142,11 +143,16 @@ def positive(text: str) -> int:
     return number
 
 
-def written_path(text: str) -> Path:
-    """Return the path in `text`, which must not be empty, as an unset variable of a shell is."""
+def given(text: str) -> str:
+    """Return a text, which must not be empty, as an unset variable of a shell is."""
     if not text:
-        raise argparse.ArgumentTypeError("is empty; give a name, or . for the current folder")
-    return Path(text)
+        raise argparse.ArgumentTypeError("is empty; give a value (the current folder is .)")
+    return text
+
+
+def given_path(text: str) -> Path:
+    """Return the path in a text, which must not be empty: that would be the current folder."""
+    return Path(given(text))
 
 
 def exposure(text: str) -> Exposure:

@@ -7,7 +7,6 @@ import errno
 import os
 import shlex
 import shutil
-import stat
 import sys
 import tempfile
 import time
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from tqdm import tqdm
 
 from crfnet_core.files import json_text
+from crfnet_core.staging import is_own_folder
 from crfnet_core.types import Progress
 
 from ..streams import shown
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: Seconds between two lines of progress without a terminal.
 LINE_SECONDS = 60
 
-NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
+NO_SHEET = "crfnet: no sheet is drawn, {}, or add --no-sheet"
 
 
 def prepare_matplotlib() -> bool:
@@ -39,11 +39,15 @@ def prepare_matplotlib() -> bool:
     Its list of fonts, which it would write into the home of the user, goes into a folder among the temporary files.
     """
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
+    reason = "matplotlib is absent: pip install 'crfnet[plot]'"
     if find_spec("matplotlib") is not None:
-        if "MPLCONFIGDIR" not in os.environ:
-            os.environ["MPLCONFIGDIR"] = _font_folder()
-        return True
-    print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
+        try:
+            if "MPLCONFIGDIR" not in os.environ:
+                os.environ["MPLCONFIGDIR"] = _font_folder()
+            return True
+        except OSError:
+            reason = "no folder takes temporary files: set TMPDIR to one"
+    print(NO_SHEET.format(reason), file=sys.stderr)  # noqa: T201
     return False
 
 
@@ -53,8 +57,7 @@ def _font_folder() -> str:
     folder = Path(tempfile.gettempdir(), f"crfnet-matplotlib-{user}")
     with suppress(OSError):
         folder.mkdir(mode=0o700, exist_ok=True)
-        state = folder.lstat()
-        if stat.S_ISDIR(state.st_mode) and (os.name == "nt" or (state.st_uid, state.st_mode & 0o077) == (user, 0)):
+        if is_own_folder(folder) and (os.name == "nt" or not folder.stat().st_mode & 0o077):
             return str(folder)
     folder = Path(tempfile.mkdtemp(prefix="crfnet-matplotlib-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)

@@ -1,4 +1,5 @@
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -150,6 +151,19 @@ def test_other_files_are_no_calibration(tmp_path, text, code):
 def test_a_folder_that_cannot_be_made_is_named(tmp_path):
     (tmp_path / "file").touch()
     assert code_of(CameraLibrary(tmp_path / "file" / "cameras").save, camera("a")) == "camera_folder"
+
+
+def test_a_folder_that_may_not_be_read_has_no_cameras_to_offer(tmp_path, monkeypatch):
+    """As the home of another user: no estimate fails for that, but a camera that is asked for by name."""
+
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "glob", refuse)
+    library = CameraLibrary(tmp_path)
+    assert library.cameras() == []
+    assert "Permission denied" in library.problems()[0]
+    assert code_of(library.get, "a") == "camera_folder"
 
 
 def test_the_user_s_own_library_is_where_the_variable_or_the_system_says(own, monkeypatch, tmp_path):

@@ -71,7 +71,6 @@ def test_the_merge_line_of_the_documents_works(folder, root, tmp_path):
     [
         ("add --base BASE LOOK", "usage"),
         ("add --base nowhere --out OUT LOOK", "config_unknown"),
-        ("add --base BASE --out '' LOOK", "usage"),
         ("add --base BASE --out OUT OUT", "not_a_look"),
         ("add --base LOOK --out LOOK LOOK --overwrite", "base_would_change"),
         ("add LOOK --out OUT", "usage"),

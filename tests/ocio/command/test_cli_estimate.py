@@ -119,10 +119,18 @@ def test_a_photograph_that_is_given_twice_counts_once(estimate, plate, monkeypat
     assert [photo["name"] for photo in json.loads(done.out)["estimates"][0]["photographs"]] == ["plate.jpg"]
 
 
-def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model, tmp_path, monkeypatch):
-    monkeypatch.setattr(printing, "find_spec", lambda name: None)
+@pytest.mark.parametrize(("part", "words"), [("find_spec", "pip install"), ("_font_folder", "set TMPDIR")])
+def test_says_how_to_get_the_sheet(crfnet, plate, fixed_model, tmp_path, monkeypatch, part, words):
+    """Without matplotlib, and on a disk to which nothing can be written but the results."""
+
+    def absent(*_):
+        if part == "_font_folder":
+            raise FileNotFoundError(2, "No usable temporary directory found in ['/tmp']")
+
+    monkeypatch.delenv("MPLCONFIGDIR", raising=False)
+    monkeypatch.setattr(printing, part, absent)
     done = crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model)
-    assert (done.code, done.err) == (0, f"{printing.NO_MATPLOTLIB}\n")
+    assert (done.code, words in done.err, done.err.count("\n")) == (0, True, 1)
     assert not (tmp_path / "plate_sheet.png").exists()
 
 

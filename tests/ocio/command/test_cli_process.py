@@ -51,8 +51,9 @@ def test_a_reader_that_leaves_is_no_error_message(look):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_leaves_nothing_and_no_traceback(arguments, tmp_path, number):
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGXCPU", "SIGUSR1", "SIGUSR2"])
+def test_a_signal_leaves_nothing_and_no_traceback(arguments, tmp_path, name):
+    number = getattr(signal, name)
     command = [sys.executable, "-c", WAITING, *arguments]
     with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.readline()

@@ -51,7 +51,6 @@ BAD = [
     ("file_exists", "estimate plate.jpg --out dangling"),
     ("each_option_alone", "estimate plate.jpg --workers 2"),
     ("usage", "estimate plate.jpg --depth double"),
-    ("usage", "estimate plate.jpg --out ''"),
     ("no_such_plate", "linearize none.jpg --lut good.spi1d"),
     ("no_such_plate", "linearize loop.jpg --lut good.spi1d"),
     ("no_such_frames", "linearize none.%04d.jpg --lut good.spi1d"),
@@ -81,6 +80,24 @@ def test_bad_input_is_refused_and_everything_left_as_it_was(crfnet, fixed_model,
     assert (done.refusal, done.out) == (code, "")
     assert tree(tmp_path) == before
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("estimate '' --out x --each", "estimate a --out ''", "estimate a --out x --frames ''", "info ''"),
+        *("estimate a --out x --model ''", "estimate a --out x --prior ''", "estimate a --out x --scheduler ''"),
+        *("linearize '' --out x", "linearize a --out x --lut ''", "linearize a --out x --lut a.spi1d --camera ''"),
+        *("calibrate '' --out x", "calibrate a --out x --name ''", "calibrate a --out x --times ''"),
+        *("calibrate a --out x --compare ''", "camera add --from-calibration ''", "camera show ''"),
+        *("camera add --from-calibration a --name ''", "camera export 'A7' ''", "config list ''"),
+        *("config add --base '' --out x a", "config add --base a --out '' a", "config add --base a --out x ''"),
+    ],
+)
+def test_an_empty_value_as_of_an_unset_variable_is_refused(crfnet, line):
+    """Else it is the current folder, or as if the option were not given."""
+    done = crfnet(*shlex.split(line))
+    assert (done.refusal, ": is empty; " in done.err) == ("usage", True)
 
 
 @pytest.mark.parametrize(("name", "code"), [("none.jpg", "no_such_file"), (".", "folder_for_photograph")])
@@ -113,6 +130,9 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
         (MemoryError(), BAD_INPUT, "crfnet: error: not enough memory"),
         (OSError(28, "No space left on device", "x.exr"), BAD_INPUT, "crfnet: error: x.exr: No space left on device;"),
         (OSError(2, "No such file"), BAD_INPUT, "crfnet: error: the output: No such file;"),
+        (type("OfNumPy", (MemoryError,), {})("8 MiB"), BAD_INPUT, "crfnet: error: not enough memory; close something"),
+        (RuntimeError("can't start new thread"), BAD_INPUT, "crfnet: error: the system starts no more threads;"),
+        (ImportError("libx.so:\n no\x1b"), BAD_INPUT, "crfnet: error: libx.so: no?; clear PYTHONPATH"),
     ],
 )
 def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, problem, code, line):

@@ -117,7 +117,7 @@ def test_a_specification_stands_for_ascending_numbers(frames, numbers):
     assert parse_frames(frames) == numbers
 
 
-@pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1.5", "٣", "1-5x0", "1-2x0.5"])
+@pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1 2", "1.5", "٣", "1-5x0", "1-2x0.5"])
 def test_a_malformed_specification_is_refused(frames):
     with refused(PlateError, "bad_frames"):
         parse_frames(frames)
