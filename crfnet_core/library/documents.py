@@ -1,6 +1,6 @@
 """A camera as a JSON document, and back; and the document of a calibration as a camera."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -16,9 +16,6 @@ CAMERA_VERSION = 1
 
 #: Bounds of sensitivities, and of standard deviations in stops: far beyond all that is measured.
 LARGEST_ISO, LARGEST_DEVIATION = 1e9, 100.0
-
-#: Errors of a document that holds other values than a camera needs.
-_DAMAGES = (CRFNetError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
 
 
 def camera_document(camera: Camera) -> dict[str, Any]:
@@ -39,56 +36,20 @@ def read_camera(path: Path) -> Camera:
 
     Raise CameraError if the file cannot be read, is damaged, holds no measured response, or is of a later version.
     """
-    return _camera(path, checked_name(path.stem), _read_object(path, ("camera",), "not_a_camera"))
+    return _read(path, path.stem, ("camera",), "not_a_camera")
 
 
 def read_calibration(path: Path, name: str | None = None) -> Camera:
     """Return the camera in the JSON document of a calibration, or of a camera; by default named as the file.
 
-    Raise CameraError if the file cannot be read, holds neither, or the name breaks the rule of `checked_name`.
+    Raise CameraError as `read_camera`, or if the name breaks the rule of `checked_name`.
     """
-    name = checked_name(path.stem if name is None else name)
-    document = _read_object(path, ("calibration", "camera"), "not_a_calibration")
-    if document["kind"] == "camera":
-        return _camera(path, name, document)
-    try:
-        used = [frame for frame in document["frames"] if frame["used"]]
-        entry = {
-            **document["camera"],
-            "brightness": ResponseCurve.restored(document["response"]["brightness"]).brightness,
-            "software": document["camera"]["firmware"],
-            "shape_stops": document["shape_uncertainty_stops"],
-            "scale_stops": document["scale_uncertainty_stops"],
-            "source": _source(len(used), document),
-            "iso": {round(frame["iso"]) for frame in used if frame["iso"]},
-            "warnings": document["warnings"],
-        }
-        return _measured(name, entry)
-    except _DAMAGES as problem:
-        raise CameraError("damaged_calibration", path=path, reason=problem) from None
+    return _read(path, path.stem if name is None else name, ("camera", "calibration"), "not_a_calibration")
 
 
-def _camera(path: Path, name: str, document: Mapping[str, Any]) -> Camera:
-    """Return the camera in its own document."""
-    if (version := document.get("camera_version")) != CAMERA_VERSION:
-        raise CameraError("camera_version", path=path, version=version, needed=CAMERA_VERSION)
-    if document.get("measured") is None:
-        raise CameraError("camera_not_measured", path=path)
-    try:
-        return _measured(name, document["measured"])
-    except _DAMAGES as problem:
-        raise CameraError("damaged_camera", path=path, reason=problem) from None
-
-
-def _source(count: int, document: Mapping[str, Any]) -> str:
-    """Return the files of a calibration in words."""
-    if document.get("method") != "raw pairs":
-        return f"{count} exposures"
-    return f"{count} raw file{'s' * (count > 1)} (white {document['white_basis']})"
-
-
-def _read_object(path: Path, kinds: tuple[str, ...], code: str) -> dict[str, Any]:
-    """Return the object in a JSON file, or raise CameraError with a code if it is of none of some kinds."""
+def _read(path: Path, name: str, kinds: Sequence[str], code: str) -> Camera:
+    """Return the camera in a document of some kinds; raise CameraError with a code for documents of other kinds."""
+    name = checked_name(name)
     try:
         document = read_json(path)
     except OSError as problem:
@@ -97,10 +58,36 @@ def _read_object(path: Path, kinds: tuple[str, ...], code: str) -> dict[str, Any
         document = None
     if not isinstance(document, dict) or document.get("kind") not in kinds:
         raise CameraError(code, path=path)
-    return document
+    is_camera = document["kind"] == "camera"
+    if is_camera and (version := document.get("camera_version")) != CAMERA_VERSION:
+        raise CameraError("camera_version", path=path, version=version, needed=CAMERA_VERSION)
+    if is_camera and document.get("measured") is None:
+        raise CameraError("camera_not_measured", path=path)
+    try:
+        return _camera(name, document["measured"] if is_camera else _entry(document))
+    except (CRFNetError, AttributeError, KeyError, OverflowError, TypeError, ValueError) as problem:
+        raise CameraError("damaged_camera" if is_camera else "damaged_calibration", path=path, reason=problem) from None
 
 
-def _measured(name: str, entry: Mapping[str, Any]) -> Camera:
+def _entry(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entry of a camera that the document of a calibration makes."""
+    used = [frame for frame in document["frames"] if frame["used"]]
+    files = f"{len(used)} exposures"
+    if document.get("method") == "raw pairs":
+        files = f"{len(used)} raw file{'s' * (len(used) > 1)} (white {document['white_basis']})"
+    return {
+        **document["camera"],
+        "software": document["camera"]["firmware"],
+        "iso": {round(frame["iso"]) for frame in used if frame["iso"]},
+        "source": files,
+        "shape_stops": document["shape_uncertainty_stops"],
+        "scale_stops": document["scale_uncertainty_stops"],
+        "warnings": document["warnings"],
+        "brightness": ResponseCurve.restored(document["response"]["brightness"]).brightness,
+    }
+
+
+def _camera(name: str, entry: Mapping[str, Any]) -> Camera:
     """Return the camera in the entry of a document."""
     make, model, software, source = _texts(entry[field] for field in ("make", "model", "software", "source"))
     iso = tuple(sorted(number_of(each, int, least=1, most=LARGEST_ISO) for each in entry["iso"]))
