@@ -7,7 +7,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import Observations, members_of_bins
 from crfnet_core.calibration.curve_model import in_camera_responses
-from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
+from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, ExposureLabel, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measured import FrameReport
 from crfnet_core.calibration.measurement import Measurement
@@ -25,6 +25,9 @@ LARGEST_STEP = 6.0
 #: Difference in stops between a frame's exposure and its label, and fraction of samples that fit in no way: the largest
 #: that are not refused, and the least that are worth a notice.
 MOST_OFFSET, MOST_OUTLIERS, NOTABLE_OFFSET, NOTABLE_OUTLIERS = 0.3, 0.3, 0.1, 0.1
+
+#: Stops by which stated times may differ from the files' own without a notice: EXIF's 1/60 s may be 1/64 s.
+NOTABLE_RESTATED = 0.25
 
 #: Largest root mean square residual in 8-bit codes.
 MOST_RESIDUAL = 2.5
@@ -91,10 +94,12 @@ def notices_of(
     used = [frame.path.name for frame in frames if frame.is_used]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
     highest = 255 * float(measurement.seen.brightness[measurement.seen.is_used].max())  # white = 255
+    restated = _restated([frame.label for frame in frames])
     distance, part = nearest_known(measurement.curve, in_camera=True), measurement.outliers
     doubts = [
         *(("frame_unfit", {"name": frame.path.name}, not frame.is_used) for frame in frames),
         *(("frame_off", {"name": name, "off": off}, abs(off) > NOTABLE_OFFSET) for name, off in offsets),
+        ("times_differ", {"stops": restated}, restated > NOTABLE_RESTATED),
         ("settings_differ", {"settings": " and ".join(exposures.differing)}, exposures.differing),
         ("unlike_cameras", {"distance": distance}, distance > MOST_UNKNOWN),
         ("codes_above_unseen", {"highest": white * highest}, highest < LAST_SHAPE_CODE),
@@ -103,6 +108,12 @@ def notices_of(
         ("white_below_largest", {"code": 255 * white}, white < 1),
     ]
     return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
+
+
+def _restated(labels: Sequence[ExposureLabel]) -> float:
+    """Return by how many stops the times that a user states differ from the files' own, but for a common factor."""
+    ratios = [label.seconds / label.file_seconds for label in labels if label.seconds and label.file_seconds]
+    return float(np.ptp(np.log2(ratios))) if ratios else 0.0
 
 
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:
