@@ -211,6 +211,8 @@ SENTENCES: Mapping[str, str] = {
     "pair_dark": "{path}: no code above {top:.0f} is seen, {least:.0f} is needed; take a brighter exposure",
     "pair_differs": "{path}: does not show the same as {raw} (correlation {correlation:.2f}); give the JPEG of the same"
     " shot, as the camera wrote it",
+    "pair_exposed": "{path}: was exposed for {seconds:.3g} s, {raw} for {raw_seconds:.3g} s; give the JPEG of the same"
+    " shot",
     "pair_tilted": "{path}: is brightened by {stops:.1f} stops from one side to the other, as by a gradient filter;"
     " give the JPEG as the camera wrote it",
     "pair_unexplained": "{path}: no single curve and color matrix explain the JPEG ({residual:.1f} codes off,"

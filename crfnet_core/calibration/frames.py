@@ -12,6 +12,7 @@ from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.photograph.photo import CodeArray, CodeValues
 from crfnet_core.types import Float64Array, Progress, show_progress
 
@@ -30,15 +31,21 @@ ABOVE_NEIGHBORS, ABOVE_REST = 1.5, 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
-    """One frame of a stack."""
+class CameraFile:
+    """A picture as a camera wrote it."""
 
     path: Path
-    codes: CodeArray  # (H, W, 3): its code values, every `stride`-th in both directions
-    stride: int  # distance of the samples in the file
+    codes: CodeArray  # (H, W, 3): its code values
+    metadata: FileMetadata  # the rest of the file's header
+
+
+@dataclass(frozen=True, eq=False)
+class Frame(CameraFile):
+    """One frame of a stack; its codes are thinned out."""
+
+    stride: int  # distance of the codes in the file, in both directions
     largest: int  # the largest code that the file can hold
     label: ExposureLabel  # its exposure by EXIF, or with the time that the user states
-    metadata: FileMetadata  # the rest of the file's header
     is_gray: bool  # whether the three channels are equal everywhere
 
 
@@ -63,10 +70,20 @@ def read_frames(
         frames.append(_frame(path, values, ExposureLabel.from_header(values.header, time)))
         _check_like_first(frames[0], frames[-1])
         show_progress(progress, len(frames), len(paths))
-    for first, second in combinations(frames, 2):
-        if np.array_equal(first.codes, second.codes) and np.ptp(first.codes):
-            raise CalibrationError("frame_twice", path=second.path, first=first.path.name)
+    check_files(frames)
     return frames
+
+
+def check_files(files: Sequence[CameraFile]) -> None:
+    """Refuse files of several cameras, and copies of a picture."""
+    for first, second in combinations(files, 2):
+        names = {"path": second.path, "first": first.path.name}
+        first_camera, camera = (camera_name(each.metadata.make, each.metadata.model) for each in (first, second))
+        if camera != first_camera:
+            cameras = {"camera": camera or "no camera", "first_camera": first_camera or "no camera"}
+            raise CalibrationError("frame_camera", **names, **cameras)
+        if np.array_equal(first.codes, second.codes) and np.ptp(first.codes):
+            raise CalibrationError("frame_twice", **names)
 
 
 def white_level(frames: Sequence[Frame]) -> float:
@@ -107,19 +124,14 @@ def _frame(path: Path, values: CodeValues, label: ExposureLabel) -> Frame:
     """Return a file's samples, thinned out."""
     stride = -(-max(values.codes.shape) // KEPT_SIDE)
     codes = values.codes[::stride, ::stride].copy()
-    return Frame(path, codes, stride, values.largest, label, values.metadata, values.is_gray)
+    return Frame(path, codes, values.metadata, stride, values.largest, label, values.is_gray)
 
 
 def _check_like_first(first: Frame, frame: Frame) -> None:
-    """Refuse a frame whose size, bit depth or camera differs from the first frame's."""
+    """Refuse a frame whose size or bit depth differs from the first frame's."""
     names = {"path": frame.path, "first": first.path.name}
     size, first_size = (f"{each.metadata.width} x {each.metadata.height}" for each in (frame, first))
     if size != first_size:
         raise CalibrationError("frame_size", **names, size=size, first_size=first_size)
     if frame.largest != first.largest:
         raise CalibrationError("frame_bits", **names)
-    camera, first_camera = (
-        f"{each.metadata.make} {each.metadata.model}".strip() or "no camera" for each in (frame, first)
-    )
-    if camera != first_camera:
-        raise CalibrationError("frame_camera", **names, camera=camera, first_camera=first_camera)

@@ -11,6 +11,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import members_of_bins
 from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
+from crfnet_core.calibration.frames import check_files
 from crfnet_core.calibration.measured import CHANNEL_PART, PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
@@ -78,6 +79,7 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
+    check_files(pairs)
     cells, fit, basis = _measured(pairs)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
