@@ -11,8 +11,7 @@ import platformdirs
 
 from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
-from crfnet_core.library.camera import Camera, name_key
-from crfnet_core.library.documents import camera_document, read_camera
+from crfnet_core.library.camera import Camera, camera_document, name_key, read_camera
 
 #: The environment variable that names another data folder, such as one that a studio shares.
 DATA_VARIABLE = "CRFNET_DATA_DIR"
