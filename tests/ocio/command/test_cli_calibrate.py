@@ -158,3 +158,8 @@ def test_without_its_packages_a_raw_file_is_refused_in_one_line(raw_folder, crfn
     monkeypatch.setitem(sys.modules, "rawpy", None)
     done = crfnet("calibrate", raw_folder[0] / "shot.dng", "--out", tmp_path / "out", "--no-sheet")
     assert done.refusal == "rawpy_missing"
+
+
+def test_times_for_raw_files_are_refused(raw_folder, crfnet, tmp_path):
+    done = crfnet("calibrate", raw_folder[0] / "shot.dng", "--times", "1/60", "--out", tmp_path / "out", "--no-sheet")
+    assert done.refusal == "times_of_raw_files"
