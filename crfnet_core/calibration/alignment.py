@@ -56,7 +56,8 @@ def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
     still, moved = (_correlation(first, second, shift) for shift in (0 * peak, peak - reach))
     if moved < max(still + LEAST_GAIN, LEAST_CORRELATION):
         return np.zeros(2)
-    return np.add(peak - reach, [_vertex(near[:, peak[1]], peak[0]), _vertex(near[peak[0]], peak[1])], dtype=np.float64)
+    part = [_vertex(near[:, peak[1]], peak[0]), _vertex(near[peak[0]], peak[1])]
+    return np.asarray(peak - reach + part, dtype=np.float64)
 
 
 def common_parts(pictures: Sequence[NDArray[Any]], shifts: IndexArray) -> list[NDArray[Any]]:

@@ -1,11 +1,9 @@
 """Exposures of the frames of a stack, in stops: from EXIF or given times, as labeled and as cameras really expose."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -34,7 +32,7 @@ class ExposureLabel:
     file_seconds: float | None = None  # exposure time by the file, also if the user states another
 
     @classmethod
-    def from_header(cls, header: Any, seconds: float | None = None) -> ExposureLabel:
+    def from_header(cls, header: Any, seconds: float | None = None) -> Self:
         """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`, or with the time that a user states.
 
         Raise CalibrationError if this is not a positive number.

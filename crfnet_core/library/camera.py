@@ -1,13 +1,11 @@
 """A camera of the library: a measured response, its uncertainty and settings; and the same as a JSON document."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from crfnet_core.errors import CameraError, CRFNetError, one_line
 from crfnet_core.files import read_json
@@ -37,7 +35,7 @@ class CameraSettings:
     iso: tuple[int, ...] = ()  # sensitivities, sorted
 
     @classmethod
-    def from_metadata(cls, metadata: FileMetadata) -> CameraSettings:
+    def from_metadata(cls, metadata: FileMetadata) -> Self:
         """Return the settings in a file's metadata."""
         iso = () if metadata.iso is None else (metadata.iso,)
         return cls(metadata.make, metadata.model, metadata.software, iso)

@@ -1,7 +1,5 @@
 """Measure a camera's response from raw files and their JPEGs: the whole of it on one screen."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

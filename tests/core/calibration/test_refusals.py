@@ -10,7 +10,6 @@ from crfnet_core.errors import CalibrationError
 from tests.helpers.images import read_image, write_image
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
-
 #: The times of six frames.
 SECONDS = [2.0**number for number in range(6)]
 
