@@ -91,9 +91,7 @@ def test_weak_local_tone_mapping_is_fitted_and_said(pair, true_response):
 @pytest.mark.parametrize(
     ("kind", "seed", "code"),
     [
-        ("another scene", 0, "pair_(differs|cropped)"),
-        ("moved", 0, "pair_(differs|cropped)"),
-        ("cropped", 0, "pair_(differs|cropped)"),
+        *((kind, 0, "pair_(differs|cropped)") for kind in ("another scene", "moved", "cropped")),
         ("edited", SOFTWARE, "frame_edited"),
         ("edited", GRADIENT, "pair_tilted"),
     ],

@@ -10,9 +10,6 @@ from crfnet_core.errors import CalibrationError
 from tests.helpers.images import read_image, write_image
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
-#: The times of six frames.
-SECONDS = [2.0**number for number in range(6)]
-
 
 def refusal(paths, **options):
     with pytest.raises(CalibrationError) as caught:
@@ -43,11 +40,8 @@ def test_frames_without_times_of_different_bit_depths_or_cameras_are_refused(tmp
     assert refusal(paths).code == "frame_bits"
     write_image(paths[0], codes, **header | {"Model": "B"})
     problem = refusal(paths)
-    assert (problem.code, problem.facts["camera"], problem.facts["first_camera"]) == (
-        "frame_camera",
-        "Canon A",
-        "Canon B",
-    )
+    cameras = problem.facts["camera"], problem.facts["first_camera"]
+    assert (problem.code, *cameras) == ("frame_camera", "Canon A", "Canon B")
 
 
 @pytest.mark.parametrize(
@@ -58,7 +52,6 @@ def test_frames_without_times_of_different_bit_depths_or_cameras_are_refused(tmp
         ([1, 1, 1, 1, 1, 1e4], "exposures_gap"),
         ([1e-308, 1, 2, 4, 8, 1e308], "exposures_gap"),
         *(([1, 2, wrong, 8, 16, 32], "bad_seconds") for wrong in (0, -4, np.nan, np.inf, "4")),
-        ([1, 2, 8, 4, 16, 32], "frame_mistimed"),
         ([32, 16, 8, 4, 2, 1], "scene_moved"),
     ],
 )
@@ -79,21 +72,20 @@ def test_edited_frames_are_refused_unless_accepted(stack):
         (lambda codes, number, one: 255 - codes, "no_single_curve"),
         (lambda codes, number, one: codes * np.linspace(0.6, 1.1, len(codes))[:, None, None], "scene_moved"),
         (lambda codes, number, one: np.roll(codes, 60 * (number > 2), axis=0), "frame_mistimed"),
-        (lambda codes, number, one: np.full_like(codes, 255), "codes_unseen"),
-        (lambda codes, number, one: 0 * codes, "codes_unseen"),
+        (lambda codes, number, one: 0 * codes + 40 * number, "codes_unseen"),
         (lambda codes, number, one: one, "frame_twice"),
         (lambda codes, number, one: one * 2.0 ** (number - 3), "unlike_cameras"),
-        (lambda codes, number, one: codes if number % 3 else codes + 15 * np.sin(codes / 40), "frame_unfit"),
     ],
-    ids=["negatives", "gradient", "moved", "white", "black", "one picture", "one, brightened", "tone curve"],
+    ids=["negatives", "gradient", "moved", "flat", "one picture", "one, brightened"],
 )
 def test_frames_that_a_program_made_or_spoiled_are_refused_or_named(stack, tmp_path, change, code):
+    seconds = [2.0**number for number in range(6)]
     pictures = [read_image(path, kind="uint8")[..., :3].astype(float) for path in stack(frames=6)]
     for number, codes in enumerate(pictures):
         changed = np.rint(change(codes, number, pictures[3]).clip(0, 255))
         write_image(tmp_path / f"{number}.png", changed.astype(np.uint8))
     try:
-        named = [each.code for each in calibrate_stack(sorted(tmp_path.glob("*.png")), seconds=SECONDS).warnings]
+        named = [each.code for each in calibrate_stack(sorted(tmp_path.glob("*.png")), seconds=seconds).warnings]
     except CalibrationError as problem:
         named = [problem.code]
     assert code in named
@@ -153,9 +145,3 @@ def test_light_that_a_channel_does_not_see_is_refused(tmp_path, light, true_resp
     paths = make_stack(tmp_path, light * np.float32(gains), true_response, StackOptions(quality=0, read_noise=0))
     problem = refusal(paths)
     assert (problem.code, problem.facts["channels"]) == ("dark_channel", channels)
-
-
-def test_a_flat_scene_is_refused(tmp_path):
-    codes = [np.full((300, 400, 3), code, np.uint8) for code in (20, 40, 70, 110)]
-    paths = [write_image(tmp_path / f"{i}.png", each) for i, each in enumerate(codes)]
-    assert refusal(paths, seconds=[1, 2, 4, 8]).code == "codes_unseen"
