@@ -7,7 +7,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import Observations, members_of_bins
 from crfnet_core.calibration.curve_model import in_camera_responses
-from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, ExposureLabel, Exposures
+from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measured import FrameReport
 from crfnet_core.calibration.measurement import Measurement
@@ -94,7 +94,9 @@ def notices_of(
     used = [frame.path.name for frame in frames if frame.is_used]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)
     highest = 255 * float(measurement.seen.brightness[measurement.seen.is_used].max())  # white = 255
-    restated = _restated([frame.label for frame in frames])
+    labels = [frame.label for frame in frames]
+    ratios = [label.seconds / label.file_seconds for label in labels if label.seconds and label.file_seconds]
+    restated = float(np.ptp(np.log2(ratios or [1.0])))  # a common factor has no effect
     distance, part = nearest_known(measurement.curve, in_camera=True), measurement.outliers
     doubts = [
         *(("frame_unfit", {"name": frame.path.name}, not frame.is_used) for frame in frames),
@@ -108,12 +110,6 @@ def notices_of(
         ("white_below_largest", {"code": 255 * white}, white < 1),
     ]
     return tuple(Notice(code, facts) for code, facts, is_so in doubts if is_so)
-
-
-def _restated(labels: Sequence[ExposureLabel]) -> float:
-    """Return by how many stops the times that a user states differ from the files' own, but for a common factor."""
-    ratios = [label.seconds / label.file_seconds for label in labels if label.seconds and label.file_seconds]
-    return float(np.ptp(np.log2(ratios))) if ratios else 0.0
 
 
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:
