@@ -193,6 +193,8 @@ SENTENCES: Mapping[str, str] = {
     " wrote them",
     "frame_twice": "{path}: is the same picture as {first}; give each frame once",
     "frame_unfit": "{name} does not fit the other frames and was left out",
+    "frames_differ": "the frames follow different curves, {codes:.1f} codes apart: each was rendered on its own, or in"
+    " another picture style",
     "frame_untimed": "{path}: names no exposure time; give the times of all frames",
     "jpeg_too_small": "{path}: the JPEG has fewer than {least} pixels along its longer side; give the camera's JPEG of"
     " full size",

@@ -129,6 +129,11 @@ def members_of_bins(bins: NDArray[Any], rank: Float64Array) -> list[IndexArray]:
     return np.split(order, np.flatnonzero(np.diff(bins[order])) + 1)
 
 
+def medians_of_bins(values: Float64Array, bins: NDArray[Any], least: int) -> Float64Array:
+    """Return the median of the values in each bin that has at least so many."""
+    return np.array([np.median(values[part]) for part in members_of_bins(bins, values) if len(part) >= least])
+
+
 def squares(picture: NDArray[Any], side: int) -> NDArray[Any]:
     """Return a picture of shape (H, W, ...) in squares: (H / side, side, W / side, side, ...), rounded down."""
     rows, columns = picture.shape[0] // side, picture.shape[1] // side
