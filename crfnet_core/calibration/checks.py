@@ -37,8 +37,8 @@ MOST_RESIDUAL = 2.5
 MOST_UNKNOWN = 2.0
 
 #: Parts of the codes in which frames are compared with their common curve, the samples that one needs, and the codes
-#: from which on they differ: of stacks of two responses 1.0 to 1.9, of others at most 0.5.
-FRAME_PARTS, LEAST_IN_PART, NOTABLE_DIFFERENCE = 8, 20, 0.8
+#: from which on they differ: three simulated stacks of two responses have 0.8 to 1.3, seven of one at most 0.5.
+FRAME_PARTS, LEAST_IN_PART, NOTABLE_DIFFERENCE = 8, 20, 0.65
 
 #: If nothing moved, blocks of equal code in one frame are equal in the next, whatever curve each was rendered with.
 #: The scatter in 8-bit codes from which on something has moved, and the levels within which blocks count as equal.
@@ -141,9 +141,9 @@ def scatter(seen: Observations, exposures: Float64Array) -> float:
 
 
 def frame_differences(fit: StackFit, brightness: Float64Array) -> float:
-    """Return by how many codes frames are off their common curve, each in its own way: the RMS over frames and parts.
+    """Return by how many codes frames are off their common curve: the mean over frames and parts of the codes.
 
-    A part is a `FRAME_PARTS`th of the codes, and counts by the median of its residuals.
+    Of each part the median residual counts, so that only what its samples have in common does.
     """
     frames = np.broadcast_to(np.arange(brightness.shape[1]), brightness.shape)
     parts, counts = (
@@ -151,7 +151,7 @@ def frame_differences(fit: StackFit, brightness: Float64Array) -> float:
         np.isfinite(fit.residual),
     )
     medians = medians_of_bins(255 * fit.residual[counts], parts[counts], LEAST_IN_PART)
-    return float(np.sqrt(np.mean(medians**2))) if len(medians) else 0.0
+    return float(np.abs(medians).mean()) if len(medians) else 0.0
 
 
 def off_trend(measurement: Measurement) -> Float64Array:
