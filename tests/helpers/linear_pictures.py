@@ -38,9 +38,7 @@ def swatch_means(pixels, size):
     return cells[:, quarter:-quarter, :, quarter:-quarter].astype(np.float64).mean(axis=(1, 3))
 
 
-def write_dng(
-    path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), black=1024, white=65000, orientation=1, seconds=1
-):
+def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), black=1024, white=65000, orientation=1):
     """Write the Bayer mosaic that a camera takes of a scene-linear Rec.709 scene, (H, W, 3), as a 16-bit DNG 1.4.
 
     The scene stands under a light of this colour, for which the camera is balanced; a gray of 1 saturates its most
@@ -68,7 +66,7 @@ def write_dng(
         277: (SHORT, 1),
         278: (LONG, height),
         279: (LONG, mosaic.nbytes),
-        33434: (RATIONAL, seconds),  # exposure time
+        33434: (RATIONAL, 1),  # exposure time in seconds
         33421: (SHORT, (2, 2)),
         33422: (BYTE, bytes("RGB".index(name) for name in pattern)),
         50706: (BYTE, bytes([1, 4, 0, 0])),

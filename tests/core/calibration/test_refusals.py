@@ -84,7 +84,6 @@ def test_edited_frames_are_refused_unless_accepted(stack):
         (lambda codes, number, one: one, "frame_twice"),
         (lambda codes, number, one: one * 2.0 ** (number - 3), "unlike_cameras"),
     ],
-    ids=["negatives", "gradient", "moved", "flat", "one picture", "one, brightened"],
 )
 def test_frames_that_a_program_made_or_spoiled_are_refused_or_named(stack, tmp_path, change, code):
     seconds = [2.0**number for number in range(6)]
@@ -96,7 +95,6 @@ def test_frames_that_a_program_made_or_spoiled_are_refused_or_named(stack, tmp_p
 
 
 def test_times_that_contradict_the_files_are_named(stack):
-    """Of a common power nothing else need be seen: the curve is bent by that power, and fits as well."""
     found = calibrate_stack(stack(frames=6), seconds=[1.6**number for number in range(6)])
     (named,) = [warning.facts["stops"] for warning in found.warnings if warning.code == "times_differ"]
     assert named == pytest.approx(5 - 5 * np.log2(1.6), abs=0.2)

@@ -30,7 +30,6 @@ def white_of(root, tmp_path):
     ("scene", "code", "options"),
     [
         ("interior", 240, {"quality": 92}),
-        ("courtyard", 240, {"quality": 92}),
         ("forest", 251, {"quality": 92}),  # detail, in which JPEG rings: the scale was off by stops
         ("courtyard", 251, {"quality": 0}),
         ("interior", 255, {"quality": 0}),
