@@ -1,10 +1,8 @@
 """Chromaticities of RGB color spaces, and the matrices between them: RGB to CIE XYZ, and chromatic adaptation."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -57,7 +55,7 @@ class Primaries:
     interop_id: str = ""  # the Color Interop Forum's name of the scene-linear space; empty if there is none
 
     @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> Primaries:
+    def from_dict(cls, entry: Mapping[str, Any]) -> Self:
         """Return the primaries that `dataclasses.asdict` made an entry of, also after JSON.
 
         Raise KeyError, TypeError or ValueError if it lacks one, or they are not chromaticities that span a space.

@@ -191,8 +191,10 @@ SENTENCES: Mapping[str, str] = {
     "frame_off": "{name} is {off:+.2f} stop from its exposure label",
     "frame_size": "{path}: has {size} pixels, {first} has {first_size}; give the frames of one stack, all as the camera"
     " wrote them",
-    "frame_twice": "{path}: is given twice; give each frame once",
+    "frame_twice": "{path}: is the same picture as {first}; give each frame once",
     "frame_unfit": "{name} does not fit the other frames and was left out",
+    "frames_differ": "the frames follow different curves, {codes:.1f} codes apart: each was rendered on its own, or in"
+    " another picture style",
     "frame_untimed": "{path}: names no exposure time; give the times of all frames",
     "jpeg_too_small": "{path}: the JPEG has fewer than {least} pixels along its longer side; give the camera's JPEG of"
     " full size",
@@ -211,6 +213,8 @@ SENTENCES: Mapping[str, str] = {
     "pair_dark": "{path}: no code above {top:.0f} is seen, {least:.0f} is needed; take a brighter exposure",
     "pair_differs": "{path}: does not show the same as {raw} (correlation {correlation:.2f}); give the JPEG of the same"
     " shot, as the camera wrote it",
+    "pair_exposed": "{path}: was exposed for {seconds:.3g} s, {raw} for {raw_seconds:.3g} s; give the JPEG of the same"
+    " shot",
     "pair_tilted": "{path}: is brightened by {stops:.1f} stops from one side to the other, as by a gradient filter;"
     " give the JPEG as the camera wrote it",
     "pair_unexplained": "{path}: no single curve and color matrix explain the JPEG ({residual:.1f} codes off,"
@@ -224,6 +228,7 @@ SENTENCES: Mapping[str, str] = {
     "shots_differ": "{first} and {last} are rendered {stops:.2f} stop apart, at most {most:g}; give shots of one"
     " picture style, without automatic tones",
     "times_count": "{times} times are given for {frames} frames; give one for each, in order",
+    "times_differ": "the given times are up to {stops:.1f} stops from the files' own, relative to each other",
     "unknown_curve": "the curve that explains the frames is far from every known response (E_est {distance}, at most"
     " {most:g}); the exposure times are probably wrong, so check them, or the files were edited",
     "unlike_cameras": "unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times",

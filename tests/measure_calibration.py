@@ -1,11 +1,11 @@
 """Measure `crfnet calibrate` on stacks of known responses, beside OpenCV, or on raw pairs: docs/CALIBRATE.md's tables.
 
 python -m tests.measure_calibration [--linear DIR] [--responses N] [--only NAME]
-python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--first N] [--only NAME] [--verbose]
+python -m tests.measure_calibration --pairs N [--bodies DATA/real_bodies] [--first N] [--verbose] [--linear DIR] ...
 
 Scenes are the studio lights of tests/data/lights, or the linear pictures of another folder. Responses are those that
 the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn; for pairs also the measured
-ones in a folder of CSV files. Thresholds of pairs were set, or changed, after draws before 300 and from 1000 to 1120.
+ones of DATA/real_bodies. Thresholds of pairs were set, or changed, after draws before 300 and from 1000 to 1120.
 """
 
 import argparse
@@ -64,7 +64,9 @@ def responses(count: int, first: int = 0) -> list[ResponseCurve]:
 
 def pair_curves(count: int, bodies: Path | None, first: int) -> list[ResponseCurve]:
     """Return `count` responses: measured bodies and the others in turn."""
-    files = sorted(bodies.glob("*.csv")) if bodies else []
+    files = sorted((bodies / "gt").glob("*.csv")) if bodies else []
+    if bodies and not files:
+        raise SystemExit(f"{bodies}: holds no gt/*.csv")
     order = [files[i] for i in np.random.default_rng(5).permutation(len(files))]
     known = [ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1]) for path in order]
     others = iter(responses(count, first))
@@ -80,6 +82,8 @@ def collected(measure: Callable[[Path, int], dict], count: int) -> tuple[dict[st
                 rows.append(measure(Path(folder), index))
             except CalibrationError as problem:
                 refused.append(problem.code)
+    if not rows:
+        raise SystemExit(f"all are refused: {dict(Counter(refused))}")
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}, refused
 
 
@@ -175,7 +179,7 @@ def main() -> None:
     parser.add_argument("--responses", type=int, default=10, help="stacks of each kind (10)")
     parser.add_argument("--only", default="", help="kinds whose name holds this")
     parser.add_argument("--pairs", type=int, default=0, help="raw pairs of each kind, in the place of stacks")
-    parser.add_argument("--bodies", type=Path, help="folder of measured responses, .csv")
+    parser.add_argument("--bodies", type=Path, help="folder with gt/*.csv, measured responses such as DATA/real_bodies")
     parser.add_argument("--first", type=int, default=0, help="number of the first draw of pairs (0)")
     parser.add_argument("--verbose", action="store_true", help="a line for every pair")
     options = parser.parse_args()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, IndexArray
 
 #: Longest side of the images that are compared, in samples.
 LONGEST_SIDE = 900
@@ -19,8 +19,20 @@ LARGEST_SHIFT = 0.1
 #: the second.
 LEAST_GAIN, LEAST_CORRELATION = 0.005, 0.4
 
-#: Shifts along rows and columns, in pixels.
-Shift = tuple[int, int]
+
+def align(pictures: Sequence[NDArray[Any]], order: Sequence[int]) -> tuple[list[NDArray[Any]], IndexArray]:
+    """Return pictures (H, W, 3) cut to what they have in common, and the rows and columns by which each is displaced.
+
+    `order` lists them by exposure. Neighbors look most alike, so each is compared with the next, and the shifts are
+    added up; the middle one has the shift 0.
+    """
+    stride = -(-max(pictures[0].shape) // LONGEST_SIDE)
+    ranks = [rank_image(picture[::stride, ::stride].mean(axis=2, dtype=np.float64)) for picture in pictures]
+    steps = [displacement(ranks[first], ranks[second]) for first, second in pairwise(order)]
+    places = np.cumsum([np.zeros(2), *steps], axis=0)
+    shifts = np.zeros((len(order), 2), dtype=np.intp)
+    shifts[list(order)] = np.rint((places - places[len(order) // 2]) * stride)
+    return common_parts(pictures, shifts), shifts
 
 
 def rank_image(gray: Float64Array) -> Float64Array:
@@ -28,19 +40,6 @@ def rank_image(gray: Float64Array) -> Float64Array:
     _, index, counts = np.unique(gray, return_inverse=True, return_counts=True)
     middle = np.cumsum(counts) - counts / 2
     return np.asarray(2 * middle[index].reshape(gray.shape) / gray.size - 1, dtype=np.float64)
-
-
-def chain_of_shifts(ranks: Sequence[Float64Array], order: Sequence[int], stride: int) -> tuple[Shift, ...]:
-    """Return by how many pixels each frame is displaced from the middle one of `order`, the frames by exposure.
-
-    Neighbors in `order` look most alike, so each rank image is compared with the next and the shifts are added up.
-    `stride` is the number of pixels between two samples of a rank image.
-    """
-    steps = [displacement(ranks[first], ranks[second]) for first, second in pairwise(order)]
-    places = np.cumsum([np.zeros(2), *steps], axis=0)
-    shifts = np.zeros((len(order), 2), dtype=int)
-    shifts[list(order)] = np.rint((places - places[len(order) // 2]) * stride)
-    return tuple((int(down), int(right)) for down, right in shifts)
 
 
 def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
@@ -53,31 +52,30 @@ def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
     surface = np.fft.irfft2(spectrum / np.maximum(np.abs(spectrum), 1e-9), s=first.shape)
     reach = max(1, round(LARGEST_SHIFT * min(first.shape)))
     near = np.roll(surface, (reach, reach), axis=(0, 1))[: 2 * reach + 1, : 2 * reach + 1]
-    row, column = (int(index) for index in np.unravel_index(int(near.argmax()), near.shape))
-    whole = (row - reach, column - reach)
-    if _correlation(first, second, whole) < max(_correlation(first, second, (0, 0)) + LEAST_GAIN, LEAST_CORRELATION):
+    peak = np.array(np.unravel_index(near.argmax(), near.shape))
+    still, moved = (_correlation(first, second, shift) for shift in (0 * peak, peak - reach))
+    if moved < max(still + LEAST_GAIN, LEAST_CORRELATION):
         return np.zeros(2)
-    return np.array([whole[0] + _vertex(near[:, column], row), whole[1] + _vertex(near[row], column)])
+    part = [_vertex(near[:, peak[1]], peak[0]), _vertex(near[peak[0]], peak[1])]
+    return np.asarray(peak - reach + part, dtype=np.float64)
 
 
-def common_parts(images: Sequence[NDArray[Any]], shifts: Sequence[Shift]) -> tuple[NDArray[Any], ...]:
-    """Return the parts of displaced images that show the same."""
-    moves = np.array(shifts)
-    first, last = np.maximum(-moves.min(axis=0), 0), images[0].shape[:2] - np.maximum(moves.max(axis=0), 0)
-    areas = [tuple(map(slice, first + move, last + move)) for move in moves]
-    return tuple(image[area] for image, area in zip(images, areas, strict=True))
+def common_parts(pictures: Sequence[NDArray[Any]], shifts: IndexArray) -> list[NDArray[Any]]:
+    """Return the parts of displaced pictures that show the same."""
+    first, last = np.maximum(-shifts.min(axis=0), 0), pictures[0].shape[:2] - np.maximum(shifts.max(axis=0), 0)
+    areas = [tuple(map(slice, first + shift, last + shift)) for shift in shifts]
+    return [picture[area] for picture, area in zip(pictures, areas, strict=True)]
 
 
-def _correlation(first: Float64Array, second: Float64Array, shift: Shift) -> float:
-    """Return the normalized cross-correlation of two images where they overlap, the second displaced by `shift`."""
-    a, b = (part - part.mean() for part in common_parts((first, second), ((0, 0), shift)))
+def _correlation(first: Float64Array, second: Float64Array, shift: IndexArray) -> float:
+    """Return the correlation of two images where they overlap, the second displaced by `shift`; 0 if one is even."""
+    a, b = (part - part.mean() for part in common_parts((first, second), np.stack([0 * shift, shift])))
     return float((a * b).sum() / np.sqrt(max((a * a).sum() * (b * b).sum(), 1e-12)))
 
 
 def _vertex(row: Float64Array, index: int) -> float:
-    """Return how far the vertex of the parabola through three samples is from the middle one, at most half a sample."""
+    """Return how far the vertex of the parabola through three samples is from the middle one; 0 at an end of a row."""
     if not 0 < index < len(row) - 1:
         return 0.0
-    before, here, after = (float(value) for value in row[index - 1 : index + 2])
-    curvature = before - 2 * here + after
-    return float(np.clip(0.5 * (before - after) / curvature, -0.5, 0.5)) if curvature < 0 else 0.0
+    before, here, after = row[index - 1 : index + 2]
+    return float(0.5 * (before - after) / min(before - 2 * here + after, -1e-12))

@@ -1,10 +1,8 @@
 """Blocks of pixels that a stack is measured in, and the most informative of them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,14 +58,13 @@ class Observations:
         """Whether the sample is white, shape (M, T): its irradiance is then at least white's."""
         return self.white_fraction >= ALL_WHITE
 
-    def subset(self, samples: BoolArray | IndexArray) -> Observations:
+    def subset(self, samples: BoolArray | IndexArray) -> Self:
         """Return some of the samples."""
-        return Observations(**{name: values[samples] for name, values in vars(self).items()})
+        return replace(self, **{name: values[samples] for name, values in vars(self).items()})
 
-    def in_frames(self, frames: BoolArray) -> Observations:
+    def in_frames(self, frames: BoolArray) -> Self:
         """Return the samples in some of the frames."""
-        cut = {name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2}
-        return Observations(**{**vars(self), **cut})
+        return replace(self, **{name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2})
 
 
 def block_means(codes: CodeArray, white: float) -> Float64Array:
@@ -130,6 +127,11 @@ def members_of_bins(bins: NDArray[Any], rank: Float64Array) -> list[IndexArray]:
     """Return the positions of the members of each bin, the ones of the lowest rank first."""
     order = np.lexsort((rank, bins))
     return np.split(order, np.flatnonzero(np.diff(bins[order])) + 1)
+
+
+def medians_of_bins(values: Float64Array, bins: NDArray[Any], least: int) -> Float64Array:
+    """Return the median of the values in each bin that has at least so many."""
+    return np.array([np.median(values[part]) for part in members_of_bins(bins, values) if len(part) >= least])
 
 
 def squares(picture: NDArray[Any], side: int) -> NDArray[Any]:

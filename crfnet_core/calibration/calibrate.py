@@ -2,16 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import compress
 from pathlib import Path
 
 import numpy as np
 
 from crfnet_core.calibration import checks
-from crfnet_core.calibration.alignment import Shift
+from crfnet_core.calibration.alignment import align
 from crfnet_core.calibration.blocks import Observations, block_means, observe
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.exposures import Exposures, stack_exposures
-from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
+from crfnet_core.calibration.frames import Frame, code_steps, read_frames, white_level
 from crfnet_core.calibration.measured import Calibration, FrameReport, PairCalibration
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure, uncertainty_of
 from crfnet_core.calibration.robust import rms_codes
@@ -19,13 +20,10 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.types import Float64Array, Progress
+from crfnet_core.types import Float64Array, IndexArray, Progress
 
 #: By how much the cost of exact powers of two may exceed the cost of the labels as they are.
 SNAPPED_BONUS = 30.0
-
-#: Largest distance in stops between nominal and snapped labels that makes no difference.
-SAME_LABELS = 0.005
 
 
 def calibrate_stack(
@@ -44,13 +42,12 @@ def calibrate_stack(
     Raise PhotoError if a frame cannot be read, and CalibrationError if the frames are not a stack, or no camera
     response explains them.
     """
-    frames = read_frames(paths, progress=progress)
-    frames = frames if seconds is None else _labeled(frames, seconds)
+    frames = read_frames(paths, seconds, progress=progress)
     checks.check_labels(frames, accept_edited=accept_edited)
     exposures = stack_exposures([frame.label for frame in frames])
     checks.check_range(exposures)
     white = white_level(frames)
-    codes, shifts = align(frames, exposures.nominal.argsort().tolist())
+    codes, shifts = align([frame.codes for frame in frames], exposures.nominal.argsort().tolist())
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
     checks.check_seen(white * every.brightness[every.is_used])
@@ -71,7 +68,7 @@ def calibrate_stack(
         metadata=frames[0].metadata,
         frames=reports,
         points=_points(measurement, white=white),
-        counts=_best_exposed(frames, measurement).counts,
+        counts=_best_counts(frames, measurement),
         warnings=checks.notices_of(measurement, reports, exposures, white=white),
     )
 
@@ -87,23 +84,11 @@ def calibrate_pairs(
     return measure_pairs(paths, accept_edited=accept_edited, progress=progress)
 
 
-def _labeled(frames: Sequence[Frame], seconds: Sequence[float]) -> list[Frame]:
-    """Return the frames with stated times."""
-    if len(seconds) != len(frames):
-        raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
-    return [
-        replace(frame, label=replace(frame.label, seconds=time)) for frame, time in zip(frames, seconds, strict=True)
-    ]
-
-
 def _readings(exposures: Exposures, first: Frame) -> dict[str, Float64Array]:
     """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
-    nominal = {"nominal": exposures.nominal}
     if exposures.snapped is None or device_of(first.metadata.make, first.metadata.model) is Device.PHONE:
-        return nominal
-    snapped = {"exact powers of two": exposures.snapped}
-    is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS
-    return snapped if is_same else snapped | nominal
+        return {"nominal": exposures.nominal}
+    return {"exact powers of two": exposures.snapped, "nominal": exposures.nominal}
 
 
 def _measured(
@@ -122,16 +107,17 @@ def _measured(
 
 
 def _frame_reports(
-    frames: Sequence[Frame], measurement: Measurement, stops: Float64Array, shifts: Sequence[Shift], *, white: float
+    frames: Sequence[Frame], measurement: Measurement, stops: Float64Array, shifts: IndexArray, *, white: float
 ) -> tuple[FrameReport, ...]:
     """Return a report of each frame."""
     offsets = np.full((len(frames), measurement.fit.offsets.shape[1]), np.nan)
     offsets[measurement.frames] = measurement.fit.offsets
     residuals = np.full(len(frames), np.nan)
     residuals[measurement.frames] = white * frame_residuals(measurement.fit)
+    columns = (stops.tolist(), offsets, (shifts * frames[0].stride).tolist(), residuals.tolist(), measurement.frames)
     return tuple(
-        FrameReport(frame.path, frame.label, float(stops[i]), offsets[i], shifts[i], float(residuals[i]), bool(is_used))
-        for i, (frame, is_used) in enumerate(zip(frames, measurement.frames, strict=True))
+        FrameReport(frame.path, frame.label, stop, offset, (down, right), residual, bool(is_used))
+        for frame, stop, offset, (down, right), residual, is_used in zip(frames, *columns, strict=True)
     )
 
 
@@ -143,8 +129,8 @@ def _points(measurement: Measurement, *, white: float) -> Float64Array:
     return np.stack([column[measurement.seen.is_used] for column in columns], axis=1)
 
 
-def _best_exposed(frames: Sequence[Frame], measurement: Measurement) -> Frame:
-    """Return the used frame whose mean brightness is nearest to the middle."""
-    used = [frame for frame, is_used in zip(frames, measurement.frames, strict=True) if is_used]
-    steps = np.arange(256) / 255
-    return min(used, key=lambda frame: abs(float(np.average(steps, weights=frame.counts)) - 0.45))
+def _best_counts(frames: Sequence[Frame], measurement: Measurement) -> Float64Array:
+    """Return `Calibration.counts`: of the used frame whose mean brightness is nearest to the middle."""
+    used = compress(frames, measurement.frames)
+    best = min(used, key=lambda frame: abs(frame.codes.mean() / frame.largest - 0.45))
+    return np.bincount(code_steps(best).ravel(), minlength=256).astype(np.float64)

@@ -1,9 +1,8 @@
 """The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. C.1)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -50,7 +49,7 @@ class CurveModel:
 
     @classmethod
     @cache
-    def load(cls) -> CurveModel:
+    def load(cls) -> Self:
         """Return the model of the packaged EMoR, with weights as widely spread as in the packaged responses."""
         emor, bank = EmorBasis.load(), ResponseBank.load()
         weights = bank.weights[bank.ordinary]

@@ -1,11 +1,9 @@
 """Exposures of the frames of a stack, in stops: from EXIF or given times, as labeled and as cameras really expose."""
 
-from __future__ import annotations
-
-import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -31,12 +29,20 @@ class ExposureLabel:
     seconds: float | None = None  # exposure time
     f_number: float | None = None  # focal length over aperture
     iso: float | None = None  # sensitivity
+    file_seconds: float | None = None  # exposure time by the file, also if the user states another
 
     @classmethod
-    def from_header(cls, header: Any) -> ExposureLabel:
-        """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`."""
+    def from_header(cls, header: Any, seconds: float | None = None) -> Self:
+        """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`, or with the time that a user states.
+
+        Raise CalibrationError if this is not a positive number.
+        """
+        if seconds is not None and not _is_positive(seconds):
+            raise CalibrationError("bad_seconds", text=seconds)
         names = ("ExposureTime", "FNumber", "Exif:PhotographicSensitivity")
-        return cls(*(_positive(header, name) for name in names))
+        values = [header_attribute(header, name) for name in names]
+        time, f_number, iso = (float(value) if _is_positive(value) else None for value in values)
+        return cls(seconds or time, f_number, iso, time)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,19 +72,21 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
 
 def parse_times(text: str) -> tuple[float, ...]:
     """Return the seconds in "1/60,1/30,0.5". Raise CalibrationError if one is not a positive number."""
-    return tuple(_seconds(part) for part in text.split(","))
+    return tuple(_seconds(part.strip()) for part in text.split(","))
 
 
 def _seconds(text: str) -> float:
-    """Return the seconds in "1/60", "0.5" or "2"."""
-    numerator, _, denominator = text.strip().removesuffix("s").partition("/")
-    try:
-        value = float(numerator) / float(denominator or 1)
-    except (ValueError, ZeroDivisionError):
-        value = 0.0
-    if not 0 < value < math.inf:
-        raise CalibrationError("bad_seconds", text=text.strip())
-    return value
+    """Return the seconds in "1/60", "0.5s" or "2"."""
+    numerator, _, denominator = text.removesuffix("s").partition("/")
+    with suppress(ValueError, ZeroDivisionError):
+        if _is_positive(value := float(numerator) / float(denominator or 1)):
+            return value
+    raise CalibrationError("bad_seconds", text=text)
+
+
+def _is_positive(value: Any) -> bool:
+    """Return whether a value is a positive, finite number."""
+    return is_number(value, least=0) and bool(value)
 
 
 def _centered(parts: Sequence[Float64Array]) -> Float64Array:
@@ -100,9 +108,3 @@ def _snapped(stops: Float64Array) -> Float64Array | None:
     grids = [(np.round(stops * step) / step, most) for step, most in LABEL_ERRORS.items()]
     near = [grid for grid, most in grids if np.abs(grid - stops).max() <= most]
     return min(near, key=lambda grid: float(np.abs(grid - stops).sum())) if near else None
-
-
-def _positive(header: Any, name: str) -> float | None:
-    """Return a positive number in a header."""
-    value = header_attribute(header, name)
-    return float(value) if is_number(value, least=0) and value else None

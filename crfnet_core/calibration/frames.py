@@ -2,16 +2,17 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.alignment import LONGEST_SIDE, Shift, chain_of_shifts, common_parts, rank_image
 from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.photograph.photo import CodeArray, CodeValues
 from crfnet_core.types import Float64Array, Progress, show_progress
 
@@ -30,38 +31,59 @@ ABOVE_NEIGHBORS, ABOVE_REST = 1.5, 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
-    """One frame of a stack."""
+class CameraFile:
+    """A picture as a camera wrote it."""
 
     path: Path
-    codes: CodeArray  # (H, W, 3): its code values, every `stride`-th in both directions
-    stride: int  # distance of the samples in the file
-    largest: int  # the largest code that the file can hold
-    counts: Float64Array  # (256,): how often each brightness occurs over all channels, in 256 steps
-    label: ExposureLabel  # its exposure by EXIF
+    codes: CodeArray  # (H, W, 3): its code values
     metadata: FileMetadata  # the rest of the file's header
+
+
+@dataclass(frozen=True, eq=False)
+class Frame(CameraFile):
+    """One frame of a stack; its codes are thinned out."""
+
+    stride: int  # distance of the codes in the file, in both directions
+    largest: int  # the largest code that the file can hold
+    label: ExposureLabel  # its exposure by EXIF, or with the time that the user states
     is_gray: bool  # whether the three channels are equal everywhere
 
 
-def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> list[Frame]:
-    """Read the frames of one static scene, checked to be of one size, bit depth and camera.
+def read_frames(
+    paths: Sequence[Path], seconds: Sequence[float] | None = None, *, progress: Progress | None = None
+) -> list[Frame]:
+    """Read the frames of one static scene, with stated exposure times if they are given.
 
-    Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, or they
-    differ in what a stack has in common.
+    Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, the times
+    are not one for each, or the frames differ in what a stack has in common.
     """
     if len(paths) < LEAST_FRAMES:
         for path in paths:
             read_metadata(path)  # refuses a folder, and the name of no file
         raise CalibrationError("few_frames", least=LEAST_FRAMES, count=len(paths))
-    path, times = Counter(path.resolve() for path in paths).most_common(1)[0]
-    if times > 1:
-        raise CalibrationError("frame_twice", path=path)
+    times = [None] * len(paths) if seconds is None else seconds
+    if len(times) != len(paths):
+        raise CalibrationError("times_count", times=len(times), frames=len(paths))
     frames: list[Frame] = []
-    for number, path in enumerate(paths):
-        frames.append(_frame(path, read_codes(path)))
+    for path, time in zip(paths, times, strict=True):
+        values = read_codes(path)
+        frames.append(_frame(path, values, ExposureLabel.from_header(values.header, time)))
         _check_like_first(frames[0], frames[-1])
-        show_progress(progress, number + 1, len(paths))
+        show_progress(progress, len(frames), len(paths))
+    check_files(frames)
     return frames
+
+
+def check_files(files: Sequence[CameraFile]) -> None:
+    """Refuse files of several cameras, and copies of a picture."""
+    for first, second in combinations(files, 2):
+        names = {"path": second.path, "first": first.path.name}
+        first_camera, camera = (camera_name(each.metadata.make, each.metadata.model) for each in (first, second))
+        if camera != first_camera:
+            cameras = {"camera": camera or "no camera", "first_camera": first_camera or "no camera"}
+            raise CalibrationError("frame_camera", **names, **cameras)
+        if np.array_equal(first.codes, second.codes) and np.ptp(first.codes):
+            raise CalibrationError("frame_twice", **names)
 
 
 def white_level(frames: Sequence[Frame]) -> float:
@@ -71,23 +93,22 @@ def white_level(frames: Sequence[Frame]) -> float:
     though the frames are exposed differently: no surface does that. JPEG rings on both sides of it, as far as the
     largest code, where samples pile up again, but less.
     """
-    green = [frame.codes[::2, ::2, 1] for frame in frames]
-    steps = [_steps(codes, frame.largest) for codes, frame in zip(green, frames, strict=True)]
-    fractions = np.array([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in steps])  # (T, 256)
+    green = [replace(frame, codes=frame.codes[::2, ::2, 1]) for frame in frames]
+    steps = [code_steps(frame) for frame in green]
+    fractions = np.array([np.bincount(each.ravel(), minlength=256) / each.size for each in steps])  # (T, 256)
     piles = Counter(pile for row in fractions if (pile := _pile(row)))
-    if not piles:
+    step, times = max(piles.items(), key=lambda pile: pile[1], default=(255, 0))
+    if times < WHITE_FRAMES or fractions[:, step].max() <= fractions[:, 255].max():
         return 1.0
-    step, times = piles.most_common(1)[0]
-    highest = fractions.max(axis=0)
-    if times < WHITE_FRAMES or highest[step] <= highest[-1]:
-        return 1.0
-    piled = np.concatenate([codes[where == step] for codes, where in zip(green, steps, strict=True)])
+    piled = np.concatenate([frame.codes[each == step] for frame, each in zip(green, steps, strict=True)])
     return int(np.bincount(piled).argmax()) / frames[0].largest
 
 
-def _steps(codes: CodeArray, largest: int) -> CodeArray:
-    """Return codes from 0 to `largest` rounded to 256 steps, of the same shape."""
-    return codes if largest == 255 else ((codes.astype(np.int64) * 255 + largest // 2) // largest).astype(np.uint8)
+def code_steps(frame: Frame) -> CodeArray:
+    """Return the codes of a frame rounded to 256 steps, of the same shape."""
+    if frame.largest == 255:
+        return frame.codes
+    return ((frame.codes.astype(np.int64) * 255 + frame.largest // 2) // frame.largest).astype(np.uint8)
 
 
 def _pile(fractions: Float64Array) -> int | None:
@@ -99,44 +120,18 @@ def _pile(fractions: Float64Array) -> int | None:
     return pile if fractions[pile] > ABOVE_NEIGHBORS * near and fractions[pile] > ABOVE_REST * below else None
 
 
-def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[Shift, ...]]:
-    """Return the codes of all frames cut to what they have in common, and by how many pixels each was displaced.
-
-    `order` lists the frames from the shortest to the longest exposure.
-    """
-    stride = -(-max(frames[0].codes.shape) // LONGEST_SIDE)
-    ranks = [rank_image(frame.codes[::stride, ::stride].mean(axis=2, dtype=np.float64)) for frame in frames]
-    shifts = chain_of_shifts(ranks, order, stride)
-    cut = common_parts([frame.codes for frame in frames], shifts)
-    return cut, tuple((down * frames[0].stride, right * frames[0].stride) for down, right in shifts)
-
-
-def _frame(path: Path, values: CodeValues) -> Frame:
+def _frame(path: Path, values: CodeValues, label: ExposureLabel) -> Frame:
     """Return a file's samples, thinned out."""
     stride = -(-max(values.codes.shape) // KEPT_SIDE)
     codes = values.codes[::stride, ::stride].copy()
-    return Frame(
-        path=path,
-        codes=codes,
-        stride=stride,
-        largest=values.largest,
-        counts=np.bincount(_steps(codes, values.largest).ravel(), minlength=256).astype(np.float64),
-        label=ExposureLabel.from_header(values.header),
-        metadata=values.metadata,
-        is_gray=values.is_gray,
-    )
+    return Frame(path, codes, values.metadata, stride, values.largest, label, values.is_gray)
 
 
 def _check_like_first(first: Frame, frame: Frame) -> None:
-    """Refuse a frame whose size, bit depth or camera differs from the first frame's."""
+    """Refuse a frame whose size or bit depth differs from the first frame's."""
     names = {"path": frame.path, "first": first.path.name}
     size, first_size = (f"{each.metadata.width} x {each.metadata.height}" for each in (frame, first))
     if size != first_size:
         raise CalibrationError("frame_size", **names, size=size, first_size=first_size)
     if frame.largest != first.largest:
         raise CalibrationError("frame_bits", **names)
-    camera, first_camera = (
-        f"{each.metadata.make} {each.metadata.model}".strip() or "no camera" for each in (frame, first)
-    )
-    if camera != first_camera:
-        raise CalibrationError("frame_camera", **names, camera=camera, first_camera=first_camera)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.alignment import Shift
 from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import Notice
 from crfnet_core.photograph.metadata import FileMetadata
@@ -70,7 +69,7 @@ class FrameReport:
     stops: float  # its exposure as used, relative to the mean of the stack
     #: Shape (C,): stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
     offsets: Float64Array
-    shift: Shift  # rows and columns in pixels by which it was displaced
+    shift: tuple[int, int]  # rows and columns in pixels by which it was displaced
     residual: float  # as of `MeasuredResponse`; NaN if it was left out
     is_used: bool  # whether it fits the others
 

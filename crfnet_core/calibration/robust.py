@@ -74,11 +74,7 @@ class ResponseProblem(ABC):
         """Return an error of the other unknowns together, in standard deviations, and its derivatives, (R,)."""
 
     def solved(self, state: Float64Array) -> Float64Array:
-        """Return the unknowns of least cost, from a start, by Gauss-Newton with Levenberg and Marquardt's damping.
-
-        `scipy.optimize.least_squares` takes two to three times as long (5 to 10 s a stack): it squares the derivatives
-        of Huber's roots, and more of its steps fail.
-        """
+        """Return the unknowns of least cost, from a start, by Gauss-Newton with Levenberg and Marquardt's damping."""
         cost, damping = self.cost(state), 1e-3
         gradient, matrix = self.normal_equations(state)
         for _ in range(MOST_STEPS):

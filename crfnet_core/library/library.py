@@ -1,18 +1,16 @@
 """Cameras in a folder, one JSON file each: listed, read, written and removed."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import platformdirs
 
 from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
-from crfnet_core.library.camera import Camera, name_key
-from crfnet_core.library.documents import camera_document, read_camera
+from crfnet_core.library.camera import Camera, camera_document, name_key, read_camera
 
 #: The environment variable that names another data folder, such as one that a studio shares.
 DATA_VARIABLE = "CRFNET_DATA_DIR"
@@ -28,14 +26,14 @@ class CameraLibrary:
     folder: Path  # the folder; it need not exist
 
     @classmethod
-    def of_user(cls) -> CameraLibrary:
+    def of_user(cls) -> Self:
         """Return the user's own library: in `DATA_VARIABLE`, or in the data folder that the system gives a user."""
         chosen = os.environ.get(DATA_VARIABLE)
         data = Path(chosen) if chosen else platformdirs.user_data_path("crfnet", appauthor=False)
         return cls(data / "cameras")
 
     @classmethod
-    def shipped(cls) -> CameraLibrary:
+    def shipped(cls) -> Self:
         """Return the library of measured cameras that comes with this project."""
         return cls(SHIPPED)
 

@@ -26,6 +26,7 @@ class RawPicture:
     is_saturated: BoolArray  # (H, W): whether some photosite of a pixel is
     balance: Float64Array  # (3,): the camera's white balance, the factors of the channels; green's is 1
     iso: int | None
+    seconds: float | None  # exposure time
     preview: bytes  # the JPEG inside; empty if there is none
     program: str  # the program that made this JPEG, if it was not the camera
 
@@ -46,6 +47,7 @@ def read_raw(path: Path) -> RawPicture:
                 is_saturated=is_saturated,
                 balance=balance / balance[1] if balance.min() > 0 else np.ones(3),
                 iso=round(raw.other.iso_speed) or None,
+                seconds=raw.other.shutter_speed or None,
                 preview=_preview(raw, rawpy),
                 program=_preview_program(path),
             )

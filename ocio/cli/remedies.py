@@ -48,6 +48,7 @@ SENTENCES: Mapping[str, str] = {
     "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
     " such as shot.%04d.png, or a name without a placeholder",
     "several_plates": "{count} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each",
+    "times_of_raw_files": "--times is for the frames of a stack; raw files need no times, so drop it",
     "two_responses": "--lut and --camera both name a response; give one of them",
 }
 

@@ -20,9 +20,6 @@ from .calibration import Measured, calibration_lines, white_words
 #: Darkest irradiance that is drawn, log2; white is 0.
 DARKEST = -12
 
-#: Colors of the frames, the darkest first.
-FRAMES = "viridis"
-
 #: Largest residual that is drawn, in 8-bit codes.
 LARGEST_RESIDUAL = 8
 
@@ -46,7 +43,7 @@ def draw_calibration(path: Path, calibration: Measured) -> None:
         else:
             stops = np.array([frame.stops for frame in calibration.frames])
             place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
-            colors = np.asarray(colormaps[FRAMES](0.9 * place))[calibration.points[:, 3].astype(int)]
+            colors = np.asarray(colormaps["viridis"](0.9 * place))[calibration.points[:, 3].astype(int)]
             title, causes = "Points of every frame, dark to bright, over irradiance in stops", STACK_CAUSES
         _draw_points(points, calibration, colors, title)
         step = (0.412 + GAP) / len(causes)

@@ -37,7 +37,7 @@ def decoded(addon, tree, composited, tmp_path):
 
 
 def cameras():
-    from crfnet_core.library.documents import read_camera
+    from crfnet_core.library.camera import read_camera
     from crfnet_core.library.library import SHIPPED
 
     return [read_camera(path).curve for path in sorted(SHIPPED.glob("*.json"))]

@@ -12,7 +12,7 @@ from crfnet.pipeline.calibrations import response_to_compare
 from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import camera_estimate
-from crfnet_core.library.documents import read_camera
+from crfnet_core.library.camera import read_camera
 from crfnet_core.library.library import SHIPPED
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior

@@ -66,6 +66,7 @@ def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), bla
         277: (SHORT, 1),
         278: (LONG, height),
         279: (LONG, mosaic.nbytes),
+        33434: (RATIONAL, 1),  # exposure time in seconds
         33421: (SHORT, (2, 2)),
         33422: (BYTE, bytes("RGB".index(name) for name in pattern)),
         50706: (BYTE, bytes([1, 4, 0, 0])),

@@ -1,8 +1,7 @@
 """Cells of a pair: the raw light and the codes of the same flat places."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter, minimum_filter
@@ -53,16 +52,16 @@ class Cells:
     tile: IndexArray  # (N,): 0 or 1, a checkerboard over the picture
     shot: Float64Array  # (N, S): 1 at the cell's own of S pairs, else 0
 
-    def subset(self, cells: BoolArray | IndexArray) -> Cells:
+    def subset(self, cells: BoolArray | IndexArray) -> Self:
         """Return some of the cells."""
-        return Cells(**{name: values[cells] for name, values in vars(self).items()})
+        return replace(self, **{name: values[cells] for name, values in vars(self).items()})
 
     @classmethod
-    def joined(cls, parts: list[Cells]) -> Cells:
+    def joined(cls, parts: list[Self]) -> Self:
         """Return the cells of several pairs."""
         each = {name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])}
-        own = np.repeat(np.eye(len(parts)), [len(part.shot) for part in parts], axis=0)
-        return cls(**{**each, "shot": own})
+        each["shot"] = np.repeat(np.eye(len(parts)), [len(part.shot) for part in parts], axis=0)
+        return cls(**each)
 
 
 def find_cells(raw: RawPicture, codes: CodeArray, place: Registration, inverse: Float32Array) -> Cells:

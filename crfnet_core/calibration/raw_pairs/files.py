@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.calibration.exposures import ExposureLabel
+from crfnet_core.calibration.frames import CameraFile
 from crfnet_core.calibration.raw_pairs.registration import LUMA, Registration, register
 from crfnet_core.errors import CalibrationError, PhotoError
 from crfnet_core.photograph.camera_raw import RawPicture, read_raw
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES, RAW_SUFFIXES, read_codes, read_content
-from crfnet_core.photograph.metadata import FileMetadata, file_origin
-from crfnet_core.photograph.photo import CodeArray
+from crfnet_core.photograph.metadata import file_origin
 
 #: Least width in pixels of the JPEG.
 LEAST_WIDTH = 480
@@ -23,20 +24,20 @@ LEAST_CORRELATION = 0.94
 #: picture's, in half widths.
 LEAST_PART, MOST_SHIFT = 0.91, 0.025
 
+#: Stops by which exposure times of one shot differ: one file may name 1/80 s, the other 0.01258 s.
+MOST_EXPOSED = 0.25
+
 #: LibRaw writes its name into the header of previews that have none.
 _LIBRAW = "dcraw"
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
-    """A raw picture and the JPEG of the same shot."""
+class Pair(CameraFile):
+    """A raw file, and the picture and metadata of its JPEG, in 8 bits."""
 
-    path: Path  # the raw file
     jpeg: Path | None  # None if the JPEG is the one inside
     raw: RawPicture
-    codes: CodeArray  # (H, W, 3): the JPEG's, in 8 bits
     place: Registration
-    metadata: FileMetadata  # the JPEG's
     editor: str  # the program that made the JPEG, if it was not the camera
 
 
@@ -74,13 +75,16 @@ def read_pair(path: Path, jpeg: Path | None, *, accept_edited: bool = False) -> 
         raise CalibrationError("frame_edited", path=shown, editor=editor)
     if max(values.codes.shape) < LEAST_WIDTH:
         raise CalibrationError("jpeg_too_small", path=shown, least=LEAST_WIDTH)
+    seconds = ExposureLabel.from_header(values.header).seconds
+    if raw.seconds and seconds and abs(np.log2(seconds / raw.seconds)) > MOST_EXPOSED:
+        raise CalibrationError("pair_exposed", path=shown, raw=path.name, seconds=seconds, raw_seconds=raw.seconds)
     codes = (values.codes // ((values.largest + 1) // 256)).astype(np.uint8)
     place = register((raw.light * raw.balance.astype(np.float32)) @ LUMA, codes @ LUMA)
     if place.correlation < LEAST_CORRELATION:
         raise CalibrationError("pair_differs", path=shown, raw=path.name, correlation=place.correlation)
     if np.exp(place.place[:2]).min() < LEAST_PART or np.abs(place.place[3:5]).max() > MOST_SHIFT:
         raise CalibrationError("pair_cropped", path=shown, raw=path.name)
-    return Pair(path, jpeg, raw, codes, place, metadata, editor)
+    return Pair(path, codes, metadata, jpeg, raw, place, editor)
 
 
 def _jpeg_of(raw: Path, given: Sequence[Path]) -> Path | None:

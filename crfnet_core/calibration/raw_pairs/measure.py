@@ -1,7 +1,5 @@
 """Measure a camera's response from raw files and their JPEGs: the whole of it on one screen."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -9,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.blocks import members_of_bins
+from crfnet_core.calibration.blocks import medians_of_bins
 from crfnet_core.calibration.curve_model import CurveModel, in_camera_mean
+from crfnet_core.calibration.frames import check_files
 from crfnet_core.calibration.measured import CHANNEL_PART, PairCalibration, ShotReport, Uncertainty, WhiteBasis
 from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
 from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
@@ -78,6 +77,7 @@ def measure_pairs(
     for number, (path, jpeg) in enumerate(names):
         pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
         show_progress(progress, number + 1, len(names))
+    check_files(pairs)
     cells, fit, basis = _measured(pairs)
     curve = fit.response()
     counted = np.isfinite(fit.residual)
@@ -162,8 +162,8 @@ def _between_channels(cells: Cells, fit: PairFit) -> float:
     counts = np.isfinite(fit.residual) & (cells.codes > FIRST_SHAPE_CODE) & (cells.codes < LAST_SHAPE_CODE)
     off = (fit.residual / np.maximum(slope, LEAST_RISE))[counts]
     groups = (np.floor(cells.codes / CODE_BIN) * 3 + np.arange(3))[counts]
-    medians = [np.median(off[part]) for part in members_of_bins(groups, off) if len(part) >= LEAST_IN_BIN]
-    return float(np.sqrt(np.mean(np.square(medians)))) if medians else 0.0
+    medians = medians_of_bins(off, groups, LEAST_IN_BIN)
+    return float(np.sqrt(np.mean(medians**2))) if len(medians) else 0.0
 
 
 def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:

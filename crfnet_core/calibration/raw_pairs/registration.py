@@ -122,8 +122,7 @@ def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Fl
 
 def _rising_curve(light: Float32Array, luma: Float32Array) -> tuple[Float64Array, Float64Array]:
     """Return points of a rising curve from light to luma: running maxima of the medians in quantiles of light."""
-    order = light.argsort()
-    parts = [part for part in np.array_split(order, STEPS) if len(part)]
+    parts = np.array_split(light.argsort(), STEPS)
     values = np.maximum.accumulate([float(np.median(luma[part])) for part in parts])
     at = np.array([float(np.median(light[part])) for part in parts])
     return at + 1e-9 * np.arange(len(at)), values

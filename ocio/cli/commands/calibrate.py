@@ -9,6 +9,7 @@ from ... import pipeline
 from ...options import OutputOptions
 from ...report.calibration import Measured, calibration_lines, comparison_lines
 from ...report.words import file_lines
+from ..remedies import CommandError
 from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
@@ -38,5 +39,7 @@ def _measured(arguments: argparse.Namespace) -> Measured:
     with progress_bar("frames") as progress:
         options = {"accept_edited": arguments.accept_edited, "progress": progress}
         if pipeline.is_pairs(arguments.photos):
+            if seconds:
+                raise CommandError("times_of_raw_files")
             return calibrate_pairs(arguments.photos, **options)
         return calibrate_stack(arguments.photos, seconds=seconds, **options)

@@ -45,7 +45,7 @@ def test_offsets_of_frames_are_found(plain):
 @pytest.mark.parametrize(
     "options",
     [{"frames": 9, "step": 1}, {"frames": 5, "step": 6}, {"shot_noise": 1e-3, "read_noise": 3e-3}, {"balance": 0.1}],
-    ids=["third stops", "two stops", "noise", "white balance"],
+    ids=str,
 )
 def test_other_stacks_are_measured(stack, options):
     true = emor_response(3)
@@ -55,8 +55,7 @@ def test_other_stacks_are_measured(stack, options):
 def test_shifted_frames_are_aligned(stack, true_response):
     shifts = ((0, 0), (1, 0), (0, -2), (3, 4), (0, 0), (-5, 7), (1, 1), (2, 0))
     found = calibrate_stack(stack(shifts=shifts, quality=0))
-    relative = np.array(shifts) - shifts[4]
-    np.testing.assert_allclose([frame.shift for frame in found.frames], relative, atol=1)
+    assert [frame.shift for frame in found.frames] == [tuple(np.subtract(shift, shifts[4])) for shift in shifts]
     assert shape_error(true_response, found.curve) < SHAPE
 
 
@@ -101,10 +100,10 @@ def test_another_response_is_compared(plain):
     assert errors["shape_error"] > 0.3
 
 
-@pytest.mark.parametrize("method", ["Debevec", "Robertson"])
-def test_it_is_nearer_to_the_truth_than_opencv(plain, true_response, method):
+def test_it_is_nearer_to_the_truth_than_opencv(plain, true_response):
     """On the same stack; OpenCV's scale, which it does not measure, is given the truth's."""
     pytest.importorskip("cv2", reason="OpenCV comes with the test extra")
     paths, found = plain
-    theirs = opencv_response(method, paths, label_seconds(StackOptions()), true_response)
-    assert shape_error(true_response, found.curve) < shape_error(true_response, theirs) < 0.3
+    for method in ("Debevec", "Robertson"):
+        theirs = opencv_response(method, paths, label_seconds(StackOptions()), true_response)
+        assert shape_error(true_response, found.curve) < shape_error(true_response, theirs) < 0.3

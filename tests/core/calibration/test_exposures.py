@@ -9,10 +9,6 @@ def of_times(*seconds):
     return stack_exposures([ExposureLabel(time) for time in seconds])
 
 
-def test_exposures_are_stops_from_their_mean():
-    np.testing.assert_allclose(of_times(0.25, 0.5, 1, 2).nominal, [-1.5, -0.5, 0.5, 1.5])
-
-
 @pytest.mark.parametrize(
     ("times", "step"),
     [

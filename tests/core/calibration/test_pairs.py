@@ -1,4 +1,5 @@
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from crfnet_core.colorimetry import ADOBE_RGB
 from crfnet_core.errors import CalibrationError, PhotoError
 from crfnet_core.photograph.camera_raw import read_raw
 from crfnet_core.response.metrics import shape_error
+from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import CAMERAS, XYZ, chart, write_dng
 from tests.helpers.pairs import PairOptions, make_pair, spoil
 from tests.helpers.stacks import light_of
@@ -89,9 +91,7 @@ def test_weak_local_tone_mapping_is_fitted_and_said(pair, true_response):
 @pytest.mark.parametrize(
     ("kind", "seed", "code"),
     [
-        ("another scene", 0, "pair_(differs|cropped)"),
-        ("moved", 0, "pair_(differs|cropped)"),
-        ("cropped", 0, "pair_(differs|cropped)"),
+        *((kind, 0, "pair_(differs|cropped)") for kind in ("another scene", "moved", "cropped")),
         ("edited", SOFTWARE, "frame_edited"),
         ("edited", GRADIENT, "pair_tilted"),
     ],
@@ -106,6 +106,16 @@ def test_what_is_not_the_camera_s_own_jpeg_of_this_shot_is_refused(
     if code == "frame_edited":
         warnings = calibrate_pairs(paths, accept_edited=True).warnings
         assert "measures_program" in [warning.code for warning in warnings]
+
+
+def test_a_copy_another_camera_and_the_jpeg_of_another_exposure_are_named(pair, tmp_path):
+    first, second = pair("first"), pair("second", seed=1)
+    copies = [shutil.copy(path, tmp_path / f"copy{path.suffix}") for path in first]
+    assert refused(calibrate_pairs, [*first, *copies]) == "frame_twice"
+    write_image(second[1], read_image(second[1], kind="uint8"), Make="Canon", ExposureTime=1.1)
+    assert refused(calibrate_pairs, [*first, *second]) == "frame_camera"
+    write_image(second[1], read_image(second[1], kind="uint8"), ExposureTime=2.0)
+    assert refused(calibrate_pairs, second) == "pair_exposed"
 
 
 def test_a_shot_without_flat_places_is_named(pair, scene):

@@ -13,7 +13,7 @@ from crfnet_core.library import (
     listed_cameras,
     read_calibration,
 )
-from crfnet_core.library.documents import read_camera
+from crfnet_core.library.camera import read_camera
 from crfnet_core.posterior import Verdict
 from tests.helpers.cameras import camera
 from tests.helpers.refusals import refused

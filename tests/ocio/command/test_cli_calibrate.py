@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
 from crfnet_core.library import read_calibration
-from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
@@ -31,8 +30,12 @@ def camera(crfnet, stack, look, tmp_path_factory):
     return folder, done.out
 
 
-def test_writes_what_it_says(camera):
+def test_writes_what_it_says(camera, true_response):
     folder, out = camera
+    lut = read_lut(folder / "eos20d.spi1d")
+    assert shape_error(true_response, response_to_compare(folder / "eos20d.cube")) < 0.05
+    assert any("Measured from 6 frames of Canon EOS 20D" in comment for comment in lut.comments)
+    assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
     assert set(listed(folder)) == FILES
     assert all(name in out for name in FILES)
     assert "6 frames of Canon EOS 20D, ISO 100, f/8, 1/60 s to 0.5 s (5.0 stops)." in out
@@ -41,19 +44,10 @@ def test_writes_what_it_says(camera):
     assert "Warning" not in out
 
 
-def test_the_luts_hold_the_inverse_of_the_response(camera, true_response):
-    lut = read_lut(camera[0] / "eos20d.spi1d")
-    assert shape_error(true_response, response_of_lut(lut)) < 0.05
-    assert any("Measured from 6 frames of Canon EOS 20D" in comment for comment in lut.comments)
-    assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
-
-
 def test_the_document_says_all(camera):
     found = json.loads((camera[0] / "eos20d.json").read_text(encoding="utf-8"))
     assert found["kind"] == "calibration"
     assert found["camera"] == {"make": "Canon", "model": "Canon EOS 20D", "firmware": ""}
-    assert 0 < found["shape_uncertainty_stops"] < 0.1
-    assert 0 < found["scale_uncertainty_stops"] < 0.3
     parts = found["uncertainty_parts"]["shape"]
     assert found["shape_uncertainty_stops"] == pytest.approx(np.linalg.norm([*parts.values()]), abs=1e-4)
     curve = response_to_compare(camera[0] / "eos20d.json")
@@ -89,7 +83,6 @@ def test_times_from_a_list(crfnet, stack, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--times", "1,1,1,1,1,1"), "exposures_span"),
         (("--name", "a/b"), "not_a_file_name"),
         (("--compare", "none.json"), "not_opened"),
     ],
@@ -113,11 +106,6 @@ def test_what_is_there_stays_there(crfnet, stack, tmp_path):
     (tmp_path / "eos20d.cube").write_text("mine")
     assert crfnet("calibrate", *stack, "--out", tmp_path, "--name", "eos20d").refusal == "file_exists"
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
-
-
-def test_a_response_from_a_lut_is_gamma(tmp_path):
-    write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
-    assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01
 
 
 @pytest.fixture(scope="module")
@@ -154,7 +142,8 @@ def test_the_document_of_a_raw_file_follows_the_schema_and_becomes_a_camera(raw_
     assert camera.curve.brightness.tolist() == document["response"]["brightness"]
 
 
-def test_without_its_packages_a_raw_file_is_refused_in_one_line(raw_folder, crfnet, tmp_path, monkeypatch):
+def test_times_of_a_raw_file_and_a_raw_file_without_its_packages_are_refused(raw_folder, crfnet, tmp_path, monkeypatch):
+    arguments = ("calibrate", raw_folder[0] / "shot.dng", "--out", tmp_path / "out", "--no-sheet")
+    assert crfnet(*arguments, "--times", "1/60").refusal == "times_of_raw_files"
     monkeypatch.setitem(sys.modules, "rawpy", None)
-    done = crfnet("calibrate", raw_folder[0] / "shot.dng", "--out", tmp_path / "out", "--no-sheet")
-    assert done.refusal == "rawpy_missing"
+    assert crfnet(*arguments).refusal == "rawpy_missing"
