@@ -38,7 +38,6 @@ SENTENCES: Mapping[str, str] = {
     "no_such_plate": "{path}: does not exist; check the name, or give a sequence: plate.%04d.png or plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
-    "plate_is_pipe": "{path}: is a pipe or a device; give a file",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process each by itself",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
