@@ -6,13 +6,13 @@ from crfnet_core.photograph.metadata.editors import editor_name
 #: Kind of device -> make -> models.
 CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.PHONE: {
-        **{"Apple": ("iPhone 13 Pro",), "LG Electronics": ("LG-H870",), "Panasonic": ("DMC-CM1",)},
+        **{"Apple": ("iPhone 13 Pro",), "LG Electronics": ("LG-H870",), "Panasonic": ("DMC-CM1",), "KYOCERA": ("KYV47",)},
         **{"samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70")},
         **{"Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"), "Sony Ericsson": ("LT26i",)},
     },
     Device.COMPACT: {
         **{"CASIO COMPUTER CO.,LTD.": ("EX-Z750",), "Canon": ("Canon DIGITAL IXUS 60", "Canon PowerShot G7")},
-        **{"EASTMAN KODAK COMPANY": ("KODAK DC240 ZOOM DIGITAL CAMERA",)},
+        **{"EASTMAN KODAK COMPANY": ("KODAK DC240 ZOOM DIGITAL CAMERA",), "JK Imaging, Ltd.": ("KODAK PIXPRO AZ421",)},
         **{"FUJIFILM": ("FinePix S5000", "FinePix X100", "X-S1", "X100V", "X20", "XF10")},
         **{"Hewlett-Packard": ("HP PhotoSmart 735",), "Leica Camera AG": ("LEICA Q2",)},
         **{"NIKON": ("COOLPIX P900", "E990"), "OLYMPUS IMAGING CORP.": ("SP570UZ",)},
@@ -34,11 +34,12 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.SCANNER: {
         **{"Nikon": ("SUPER COOLSCAN 5000 ED",), "NORITSU KOKI": ("QSS-32_33",), "FUJIFILM": ("SP-3000",)},
         **{"EPSON": ("Perfection V700",), "Canon": ("CanoScan 9000F",), "Hewlett-Packard": ("HP Scanjet G4050",)},
-        **{"Hasselblad": ("Flextight X5",)},
+        **{"Hasselblad": ("Flextight X5",), "FUJITSU": ("ScanSnap iX500",), "HP": ("Officejet 6600",)},
+        **{"Samsung": ("M2070 Series",), "KONICA MINOLTA": ("bizhub C364e", "DiMAGE Scan Dual4")},
     },
     Device.UNKNOWN: {
-        **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "SONY": ("HDR-CX405",)},
-        **{"Canon": ("Canon LEGRIA HF R86",), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
+        **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "NIKON": ("KeyMission 170",)},
+        **{"Canon": ("Canon LEGRIA HF R86", "Canon EOS C70"), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
     },
 }
 
