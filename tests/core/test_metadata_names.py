@@ -6,7 +6,7 @@ from crfnet_core.photograph.metadata.editors import editor_name
 #: Kind of device -> make -> models.
 CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.PHONE: {
-        **{"Apple": ("iPhone 13 Pro",), "LG Electronics": ("LG-H870",), "Panasonic": ("DMC-CM1",), "KYOCERA": ("KYV47",)},
+        **{"Apple": ("iPhone 13 Pro",), "LGE": ("Nexus 5",), "Panasonic": ("DMC-CM1",), "KYOCERA": ("KYV47",)},
         **{"samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70")},
         **{"Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"), "Sony Ericsson": ("LT26i",)},
     },
@@ -66,7 +66,7 @@ def test_the_makers_name_is_said_once(make, model, name):
 
 EDITORS = (
     *("Adobe Photoshop CS6 (Windows)", "Capture One 20 Windows", "DxO PhotoLab 4.0", "easyHDR 3.13", "GIMP 2.10.8"),
-    *("Google", "Photos 3.0", "Snapseed 2.0", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
+    *("Google", "Photos 3.0", "SIGMA Photo Pro 5.5", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
 )
 
 #: Firmware, and a viewer.
