@@ -53,11 +53,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
         (r"powershot|ixus|digital ixus|ixy|digital ixy|pro\d|ivy", _COMPACT),
         (r"m[gpx]\d|ts\d|lide|ir-adv|dr-|image(class|runner)", _SCANNER),
     ),
-    "nikon": (
-        (r"ls-\d", _SCANNER),
-        (r"d\d|df\b|z|1 [a-z]", _CAMERA),
-        (r"coolpix|e\d", _COMPACT),
-    ),
+    "nikon": ((r"ls-\d", _SCANNER), (r"d\d|df\b|z|1 [a-z]", _CAMERA), (r"coolpix|e\d", _COMPACT)),
     "sony": (
         (r"ilce|ilca|ilme|ilx|slt|dslr|nex|zv-e", _CAMERA),
         (r"dsc|cyber-?shot|mvc|zv-", _COMPACT),
@@ -83,8 +79,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "ricoh": ((r"pentax (k|\*|645|q)|k-|gxr", _CAMERA), (r"(ricoh )?theta", _UNKNOWN), (r"", _COMPACT)),
     "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|c \(|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
-    "konica": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
-    "minolta": ((r"dimage", _COMPACT), (r"", _CAMERA)),
+    "minolta": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
     "kodak": ((r"rfs", _SCANNER), (r"pixpro (sp|orbit)", _UNKNOWN), (r"dcs|pixpro s-1|s-1", _CAMERA), (r"", _COMPACT)),
     "hasselblad": ((r"flextight", _SCANNER), (r"l\dd", _UNKNOWN), (r"stellar", _COMPACT), (r"", _CAMERA)),
     "contax": ((r"n digital", _CAMERA), (r"", _COMPACT)),
@@ -95,7 +90,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
 
 #: Makes that begin in another way than the patterns' names.
 _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "jk imaging": "kodak", "asahi": "pentax"}
-_OTHER_NAMES |= {"seiko epson": "epson", "leitz": "leica"}
+_OTHER_NAMES |= {"seiko epson": "epson", "leitz": "leica", "konica": "minolta"}
 
 
 def device_of(make: str, model: str) -> Device:
