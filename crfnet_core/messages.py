@@ -115,6 +115,9 @@ SENTENCES: Mapping[str, str] = {
     "too_many_pixels": "{path}: claims {width} x {height} pixels; at most {megapixels} megapixels are read: crop it",
     "volume": "{path}: holds a volume; give a flat photograph",
     # photograph: recognition
+    "few_levels": "few levels: the codes pile up at some levels, with little between them, as in drawn and posterized"
+    " pictures",
+    "few_levels_advice": "give a photograph with all its levels",
     "flat_frame": "a flat frame: its brightness has no range, so no response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",

@@ -43,8 +43,8 @@ class ResponseBank:
     @classmethod
     @cache
     def plain(cls) -> ResponseBank:
-        """Return the responses of pictures without a camera's tone curve, such as renders: powers, sRGB and Rec.709."""
-        powers = [UNIFORM ** (1 / power) for power in (1.8, 2.0, 2.2, 2.4)]
+        """Return the responses of pictures without a camera's tone curve: gammas from 1 (linear), sRGB and Rec.709."""
+        powers = [UNIFORM ** (1 / power) for power in (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)]
         encoded = np.stack([*powers, srgb_encode(UNIFORM), rec709_encode(UNIFORM)]).astype(np.float32)
         return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
 

@@ -6,13 +6,13 @@ from crfnet_core.photograph.metadata.editors import editor_name
 #: Kind of device -> make -> models.
 CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.PHONE: {
-        **{"Apple": ("iPhone 13 Pro",), "LG Electronics": ("LG-H870",), "Panasonic": ("DMC-CM1",)},
+        **{"Apple": ("iPhone 13 Pro",), "LGE": ("Nexus 5",), "Panasonic": ("DMC-CM1",), "KYOCERA": ("KYV47",)},
         **{"samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70")},
         **{"Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"), "Sony Ericsson": ("LT26i",)},
     },
     Device.COMPACT: {
         **{"CASIO COMPUTER CO.,LTD.": ("EX-Z750",), "Canon": ("Canon DIGITAL IXUS 60", "Canon PowerShot G7")},
-        **{"EASTMAN KODAK COMPANY": ("KODAK DC240 ZOOM DIGITAL CAMERA",)},
+        **{"EASTMAN KODAK COMPANY": ("KODAK DC240 ZOOM DIGITAL CAMERA",), "JK Imaging, Ltd.": ("KODAK PIXPRO AZ421",)},
         **{"FUJIFILM": ("FinePix S5000", "FinePix X100", "X-S1", "X100V", "X20", "XF10")},
         **{"Hewlett-Packard": ("HP PhotoSmart 735",), "Leica Camera AG": ("LEICA Q2",)},
         **{"NIKON": ("COOLPIX P900", "E990"), "OLYMPUS IMAGING CORP.": ("SP570UZ",)},
@@ -34,11 +34,12 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.SCANNER: {
         **{"Nikon": ("SUPER COOLSCAN 5000 ED",), "NORITSU KOKI": ("QSS-32_33",), "FUJIFILM": ("SP-3000",)},
         **{"EPSON": ("Perfection V700",), "Canon": ("CanoScan 9000F",), "Hewlett-Packard": ("HP Scanjet G4050",)},
-        **{"Hasselblad": ("Flextight X5",)},
+        **{"Hasselblad": ("Flextight X5",), "FUJITSU": ("ScanSnap iX500",), "HP": ("Officejet 6600",)},
+        **{"Samsung": ("M2070 Series",), "KONICA MINOLTA": ("bizhub C364e", "DiMAGE Scan Dual4")},
     },
     Device.UNKNOWN: {
-        **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "SONY": ("HDR-CX405",)},
-        **{"Canon": ("Canon LEGRIA HF R86",), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
+        **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "NIKON": ("KeyMission 170",)},
+        **{"Canon": ("Canon LEGRIA HF R86", "Canon EOS C70"), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
     },
 }
 
@@ -65,7 +66,7 @@ def test_the_makers_name_is_said_once(make, model, name):
 
 EDITORS = (
     *("Adobe Photoshop CS6 (Windows)", "Capture One 20 Windows", "DxO PhotoLab 4.0", "easyHDR 3.13", "GIMP 2.10.8"),
-    *("Google", "Photos 3.0", "Snapseed 2.0", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
+    *("Google", "Photos 3.0", "SIGMA Photo Pro 5.5", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
 )
 
 #: Firmware, and a viewer.

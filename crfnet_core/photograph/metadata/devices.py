@@ -24,50 +24,52 @@ _PHONE, _COMPACT, _CAMERA, _SCANNER, _UNKNOWN = Device
 #: Phones include tablets, cameras digital backs; behind a scanner, the photograph is on film or paper.
 MAKERS = {
     Device.PHONE: (
-        *("apple", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus", "oppo", "realme", "vivo", "iqoo"),
+        *("apple", "iphone", "ipad", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus"),
         *("motorola", "lg", "lge", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion"),
         *("zte", "nubia", "lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm"),
         *("essential", "fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee"),
+        *("oppo", "realme", "vivo", "iqoo", "asustek", "tct", "cat", "caterpillar", "oukitel", "cubot", "hisense"),
         *("umidigi", "blackview", "sharp", "fujitsu", "gionee", "coolpad", "letv", "leeco", "micromax", "amazon"),
     ),
     Device.SCANNER: (
         *("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon"),
+        *("brother", "pfu", "xerox", "lexmark", "avision", "visioneer", "heidelberg", "creo", "czur", "pie"),
     ),
     Device.COMPACT: (
-        *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "praktica"),
-        *("general imaging", "ge", "toshiba", "sanyo", "traveler", "aiptek", "kyocera"),
+        *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "agfaphoto"),
+        *("general imaging", "ge", "gedsc", "toshiba", "sanyo", "traveler", "aiptek", "praktica"),
     ),
     Device.CAMERA: ("phase one", "leaf", "mamiya", "pixii", "zenit"),
 }
 
+#: Parts of the models of scanners, and of printers that scan, of all makers.
+_SCANNER_MODEL = r"scan|(office|desk|laser|page)jet|\b(mfc|dcp|fi|kv|scx)-|series$|bizhub|e-studio|taskalfa|\bd-lab"
+
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
 PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "canon": (
+        (r"eos c\d", _UNKNOWN),
         (r"eos", _CAMERA),
         (r"powershot|ixus|digital ixus|ixy|digital ixy|pro\d|ivy", _COMPACT),
-        (r"canoscan|m[gpx]\d|ts\d|lide|image(class|runner)", _SCANNER),
+        (r"m[gpx]\d|ts\d|lide|ir-adv|dr-|image(class|runner)", _SCANNER),
     ),
-    "nikon": (
-        (r"(super )?coolscan|ls-\d", _SCANNER),
-        (r"d\d|df\b|z|1 [a-z]", _CAMERA),
-        (r"coolpix|e\d|keymission", _COMPACT),
-    ),
+    "nikon": ((r"ls-\d", _SCANNER), (r"d\d|df\b|z|1 [a-z]", _CAMERA), (r"coolpix|e\d", _COMPACT)),
     "sony": (
         (r"ilce|ilca|ilme|ilx|slt|dslr|nex|zv-e", _CAMERA),
         (r"dsc|cyber-?shot|mvc|zv-", _COMPACT),
-        (r"xq-|so-?\d|so[vg]\d|sgp|pm-\d|[a-z]{2}\d\d[ai]|[a-j]\d{4}\b|a?\d{3}so|xperia", _PHONE),
+        (r"xq-|so-?\d|so[vg]\d|sgp|pm-\d|[a-z]{2}\d\d[aip]|pro-i|[a-j]\d{4}\b|a?\d{3}so|xperia", _PHONE),
     ),
     "samsung": (
         (r"nx|gx-?\d|ek-gn|galaxy nx", _CAMERA),
-        (r"[sv]mx|hmx", _UNKNOWN),
+        (r"[sv]mx|hmx|sm-(c200|r210)", _UNKNOWN),
         (r"(sm|gt|sgh|sch|sph|shv|shw|sc|scv|yp)-?\w|\d{3}sc\b|galaxy(?! (nx|camera))|nexus", _PHONE),
         (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|galaxy camera", _COMPACT),
         (r"digimax|kenox|u-ca|vluu|<|techwin", _COMPACT),
     ),
-    "panasonic": ((r"dmc-(g|l10?$)|dc-[gs]|dc-b(gh|s)1", _CAMERA), (r"dmc-cm", _PHONE), (r"dmc-|dc-|lumix", _COMPACT)),
+    "panasonic": ((r"dmc-(g|l10?$)|dc-([gs]|bgh|bs1)", _CAMERA), (r"dmc-cm|p-\d", _PHONE), (r"dm?c-|lumix", _COMPACT)),
     "fuji": (
-        (r"sp-?\d|frontier", _SCANNER),
-        (r"x-s1$|(finepix )?x\d|xf|xq|x half|gfx100rf", _COMPACT),
+        (r"sp-?\d|slp|frontier", _SCANNER),
+        (r"x-s1$|x-hf|(finepix )?x\d|xf|xq|x half|gfx100rf", _COMPACT),
         (r"x-|gfx|finepix ?s[1235] ?pro|is[- ]?pro|dbp", _CAMERA),
         (r"", _COMPACT),
     ),
@@ -75,19 +77,20 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "om digital": ((r"om-|e-|pen", _CAMERA), (r"", _COMPACT)),
     "pentax": ((r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT), (r"k|\*|645|q", _CAMERA)),
     "ricoh": ((r"pentax (k|\*|645|q)|k-|gxr", _CAMERA), (r"(ricoh )?theta", _UNKNOWN), (r"", _COMPACT)),
-    "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
+    "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|c \(|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
-    "konica": ((r"dimage scan", _SCANNER), (r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
-    "minolta": ((r"dimage scan", _SCANNER), (r"dimage", _COMPACT), (r"", _CAMERA)),
-    "kodak": ((r"dcs|pixpro s-1|s-1", _CAMERA), (r"", _COMPACT)),
+    "minolta": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
+    "kodak": ((r"rfs", _SCANNER), (r"pixpro (sp|orbit)", _UNKNOWN), (r"dcs|pixpro s-1|s-1", _CAMERA), (r"", _COMPACT)),
     "hasselblad": ((r"flextight", _SCANNER), (r"l\dd", _UNKNOWN), (r"stellar", _COMPACT), (r"", _CAMERA)),
     "contax": ((r"n digital", _CAMERA), (r"", _COMPACT)),
-    "hp": ((r".*scan", _SCANNER), (r"", _COMPACT)),
+    "hp": ((r"slate|touchpad", _PHONE), (r"", _COMPACT)),
+    "kyocera": ((r"finecam|fc-", _COMPACT), (r"", _PHONE)),
     "epson": ((r"r-d1", _CAMERA), (r"photopc|l-\d", _COMPACT), (r"", _SCANNER)),
 }
 
 #: Makes that begin in another way than the patterns' names.
-_OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "seiko epson": "epson", "leitz": "leica"}
+_OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "jk imaging": "kodak", "asahi": "pentax"}
+_OTHER_NAMES |= {"seiko epson": "epson", "leitz": "leica", "konica": "minolta"}
 
 
 def device_of(make: str, model: str) -> Device:
@@ -95,6 +98,8 @@ def device_of(make: str, model: str) -> Device:
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker
+    if re.search(_SCANNER_MODEL, model.casefold().strip()):
+        return _SCANNER
     for device, makers in MAKERS.items():
         if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
             return device

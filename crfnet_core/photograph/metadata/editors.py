@@ -6,7 +6,7 @@ from collections.abc import Sequence
 #: Programs that develop raw files to tones of their own; programs of camera makers imitate the camera.
 DEVELOPERS = (
     *("lightroom", "camera raw", "capture one", "captureone", "darktable", "rawtherapee", "ufraw", "dcraw", "dxo"),
-    *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power"),
+    *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power", "photo ninja"),
 )
 
 #: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
@@ -17,19 +17,19 @@ EDITORS = (
     # raw developers of camera makers, and of the company behind some of them
     *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
     *("olympus workspace", "olympus viewer", "olympus master", "om workspace", "photofunstudio"),
-    *("silkypix", "raw file converter"),
+    *("silkypix", "raw file converter", "sigma photo pro", "x raw studio"),
     # editors on computers
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
     *("irfanview", "xnview", "faststone", "picasa", "iphoto", "photos ", "digikam", "shotwell", "gthumb", "filmpack"),
-    *("windows photo", "windows live photo", "microsoft windows photo", "photodirector", "movavi", "ashampoo", "magix"),
+    *("windows photo", "windows live photo", "microsoft photo", "photodirector", "movavi", "ashampoo", "magix"),
     *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
     # HDR merging and panoramas
     *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
     *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
     # on phones and in the web
     *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
-    *("camera360", "facetune", "afterlight", "prisma", "canva", "retrica", "faceapp", "remini", "touchretouch"),
+    *("camera360", "facetune", "afterlight", "prisma", "canva", "photopea", "faceapp", "remini", "touchretouch"),
 )
 
 #: Programs that only turn, label or wrap photographs, though their names look like names of editors; and `Software`, in

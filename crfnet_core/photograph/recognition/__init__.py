@@ -1,6 +1,6 @@
-"""Inputs that are not camera photographs: log footage, limited range, renderings, recompressed copies, flat frames.
+"""Inputs that are not camera photographs: log footage, limited range, renderings, drawings, sent copies, flat frames.
 
-levels          the darkest, the middle and the brightest samples; the codes 16 to 235 of video, stored as 0 to 255
+levels          the darkest, the middle and the brightest samples; limited range stored as full; few levels
 log_footage     how likely the levels make log footage, and which curves they may have
 recognition     the detected kind, in words, with advice; refuses encodings with a published curve
 """

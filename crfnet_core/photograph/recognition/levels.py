@@ -1,4 +1,4 @@
-"""The levels of a picture: the brightness of its darkest, its middle and its brightest samples; limited range."""
+"""The levels of a picture: its darkest, its middle and its brightest samples; limited range, and few levels."""
 
 from __future__ import annotations
 
@@ -36,6 +36,10 @@ LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
 MOST_ABOVE = 0.02
+
+#: Bins in which a photograph's histogram is smooth, the least range of pictures to ask, and the unevenness of those of
+#: few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
+SMOOTH_BINS, LEAST_RANGE, FEW_LEVELS = (32, 64), 0.4, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +89,26 @@ class Levels:
         return quantile(self.histogram, WHITE)
 
 
+def has_few_levels(levels: Levels) -> bool:
+    """Return whether the samples of a picture of some range pile up at a few levels: Eq. L.5 of docs/METHOD.md."""
+    is_wide = levels.white - levels.black >= LEAST_RANGE
+    return is_wide and any(_unevenness(levels.histogram, bins) > FEW_LEVELS for bins in SMOOTH_BINS)
+
+
 def is_limited_range(levels: Levels) -> bool:
     """Return whether a picture has the histogram of limited range: Eq. L.2; of 92 real photographs none has."""
     return _has_piles(levels) or _has_ends(levels)
+
+
+def _unevenness(histogram: Float64Array, bins: int) -> float:
+    """Return how far, in their mean, the roots of bins are from the mean of their neighbors; infinity for two levels.
+
+    The ends, where photographs clip, are left out, and the two highest bins count as the third: plain backgrounds.
+    """
+    roots = np.sqrt(histogram.reshape(bins, -1).sum(axis=1))[1:-1]
+    roots = np.minimum(roots, np.sort(roots)[-3])
+    steps = np.abs(roots[1:-1] - (roots[:-2] + roots[2:]) / 2)
+    return float(steps.sum() / roots.sum()) if roots.any() else math.inf
 
 
 def _has_ends(levels: Levels) -> bool:

@@ -11,7 +11,7 @@ from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition.levels import Levels, is_limited_range
+from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 from crfnet_core.response.log_curves import COLOR_SPACES
 
@@ -30,6 +30,7 @@ class Kind(StrEnum):
     RENDERING = "rendering"
     SENT_COPY = "sent copy"
     FLAT = "flat frame"
+    FEW_LEVELS = "few levels"
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,8 @@ def recognize(
         return _recognized(Kind.FLAT, Notice(code), Notice(advice))
     if is_limited_range(levels):
         return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
+    if has_few_levels(levels):
+        return _recognized(Kind.FEW_LEVELS, Notice("few_levels"), Notice("few_levels_advice"))
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)

@@ -80,7 +80,7 @@ def test_a_screenshot_is_not_to_be_trusted(network):
     assert estimate.verdict is Verdict.DO_NOT_TRUST
 
 
-@pytest.mark.parametrize("power", [1.8, 2.0, 2.2, 2.4, "sRGB"])
+@pytest.mark.parametrize("power", [1.0, 1.2, 1.8, 2.0, 2.2, 2.4, "sRGB"])
 def test_a_plain_render_is_not_to_be_trusted_and_its_error_is_stated(network, root, power):
     encode = srgb_encode if power == "sRGB" else lambda light: light ** (1 / power)
     picture, true = rendered(root, encode), ResponseCurve.from_samples(encode(UNIFORM))
@@ -89,7 +89,7 @@ def test_a_plain_render_is_not_to_be_trusted_and_its_error_is_stated(network, ro
     assert shape_error(true, estimate.curve) < 2 * estimate.shape_uncertainty
     believed = estimated(**picture, network=network, device=Device.CAMERA)
     assert believed.verdict is Verdict.USABLE
-    assert believed.shape_uncertainty < 0.2
+    assert believed.shape_uncertainty < 0.6 * estimate.shape_uncertainty
 
 
 def test_ordinary_pictures_are_left_alone(network, plate):

@@ -13,7 +13,7 @@ from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES, Kind, Recognition, recognize, refuse_tagged
-from crfnet_core.photograph.recognition.levels import LUMA, Levels, is_limited_range
+from crfnet_core.photograph.recognition.levels import LUMA, Levels, has_few_levels, is_limited_range
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
@@ -203,6 +203,20 @@ def test_a_flat_frame_is_recognized_and_advised_other_than_noise(codes):
 def test_twelve_bits_in_a_file_of_sixteen_are_recognized():
     codes = np.random.default_rng(0).integers(0, 4096, (64, 64, 3))
     assert recognize(Levels.from_pixels(np.float32(codes / 65535)), log_probability=0).kind is Kind.FLAT
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 12, 40])
+def test_a_picture_of_few_levels_is_recognized_and_no_log_footage(count):
+    """Of two levels as a checkerboard; black is lifted as in log footage."""
+    picture = 0.15 + 0.7 * np.rint(ordinary_picture() * (count - 1)) / (count - 1)
+    assert recognize(Levels.from_pixels(quantized(picture)), log_probability=0.9).kind is Kind.FEW_LEVELS
+
+
+def test_a_plain_background_and_a_small_range_are_no_few_levels():
+    smooth = quantized(np.random.default_rng(0).normal(0.5, 0.2, (400, 400, 3)))
+    backed = np.concatenate([smooth, np.full((900, 400, 3), 0.9)])
+    for picture in (smooth, backed, 1.5 * smooth, 0.3 + 0.1 * ordinary_picture()):
+        assert not has_few_levels(Levels.from_pixels(quantized(picture)))
 
 
 def test_warm_photographs_are_not_limited_range():
