@@ -49,7 +49,7 @@ UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 CUT = ("partial file", "ended prematurely")
 
 #: Codecs whose frames state whether they hold two fields; for others the container counts. And the number of frames by
-#: which ascending times are found to be those of decoding: some programs copy AVI and bare streams into MP4 with these.
+#: which ascending times are found to be times of decoding: some programs copy AVI and bare streams into MP4 with these.
 FIELD_CODECS = ("h264", "hevc", "mpeg1video", "mpeg2video", "mpeg4", "vc1", "prores", "dnxhd")
 PROGRESSIVE, FIRST_FRAMES = 1, 32
 

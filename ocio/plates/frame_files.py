@@ -157,7 +157,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 
 def _color_channels(header: Any) -> list[int]:
-    """Return the channels of red, green and blue, or three times that of gray; none where there is neither."""
+    """Return the channels of red, green and blue, or three times the gray one; none where there is neither."""
     names = channel_names(header)
     colors = set(names) - {"A"}
     if colors >= set("RGB"):

@@ -8,7 +8,7 @@ from typing import Any
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import damaged
 
-#: Descriptors of RGB, RGBA and ABGR; and all that are read, with those of one component and of luma.
+#: Descriptors of RGB, RGBA and ABGR; and all that are read, also of one component and of luma.
 _RGB = (50, 51, 52)
 _READ = (0, 1, 2, 3, 6, *_RGB)
 

@@ -25,7 +25,7 @@ SAME_CHROMATICITIES, LEAST_AREA, LINEAR_GAMMA = 2e-4, 0.01, 0.04
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
-    """Return the color tags of an open file, of primaries and of encodings those of the first source that has any.
+    """Return the color tags of an open file: the primaries, and the encoding, of the first source that has any.
 
     The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3); damaged, it comes last.
     OpenImageIO does not read the InteroperabilityIndex of EXIF.

@@ -37,8 +37,8 @@ LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
 MOST_ABOVE = 0.02
 
-#: Bins in which a photograph's histogram is smooth, the least range of pictures to ask, and the unevenness of those of
-#: few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
+#: Bins in which a photograph's histogram is smooth, the least range of pictures to ask, and the unevenness of
+#: pictures of few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
 SMOOTH_BINS, LEAST_RANGE, FEW_LEVELS = (32, 64), 0.4, 0.3
 
 
