@@ -13,14 +13,6 @@ from .helpers import estimate as run
 
 
 @pytest.fixture
-def avif(addon, tmp_path, codes):
-    pillow = pytest.importorskip("PIL.Image", reason="needs Pillow to write AVIF")
-    path = tmp_path / "phone.avif"
-    pillow.fromarray(codes).save(path, quality=100, subsampling="4:4:4")
-    return path
-
-
-@pytest.fixture
 def heic(root, tmp_path):
     """A HEIC file in a name that Blender does not know."""
     path = tmp_path / "phone.heic"
@@ -29,8 +21,11 @@ def heic(root, tmp_path):
 
 
 def test_a_plate_that_blender_cannot_show_is_estimated_and_baked_and_its_light_is_shown(
-    addon, avif, tmp_path, estimate, in_editor
+    addon, codes, tmp_path, estimate, in_editor
 ):
+    pillow = pytest.importorskip("PIL.Image", reason="needs Pillow to write AVIF")
+    avif = tmp_path / "phone.avif"
+    pillow.fromarray(codes).save(avif, quality=100, subsampling="4:4:4")
     image = load(avif)
     run(image, "BAKE", depth="float")
     found = stored_estimate.restored(image)

@@ -12,16 +12,6 @@ from .helpers import apply, bpy, curve_of, drawn_in, group_node, groups, labels,
 pytestmark = pytest.mark.usefixtures("estimated")
 
 
-@pytest.fixture
-def cube(image):
-    """A gray cube before the camera, in the middle of the picture."""
-    scene = bpy.context.scene
-    bpy.ops.mesh.primitive_cube_add()
-    bpy.ops.object.camera_add(location=(0, 0, 8))
-    scene.camera, scene.world = bpy.context.object, bpy.data.worlds.new("gray")
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
-
-
 def over():
     """The node before the output or the Camera Look, with the nodes that lead to its background and its foreground."""
     node = output().inputs[0].links[0].from_node
@@ -30,8 +20,13 @@ def over():
     return node, *(socket.links[0].from_node for socket in node.inputs if socket.type == "RGBA")
 
 
-def test_the_render_stands_over_the_linear_plate(cube, image, codes, tmp_path):
+def test_the_render_stands_over_the_linear_plate(image, codes, tmp_path):
+    """It shows a gray cube before the camera, in the middle of the picture."""
     scene = bpy.context.scene
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.ops.object.camera_add(location=(0, 0, 8))
+    scene.camera, scene.world = bpy.context.object, bpy.data.worlds.new("gray")
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
     assert image.camera_response_settings.compose
     apply(image)
     assert scene.render.film_transparent
