@@ -77,9 +77,8 @@ def plate(root) -> Path:
 @pytest.fixture(scope="session")
 def true_response(root) -> "ResponseCurve":
     """The response through which the bundled photograph was made."""
-    from crfnet_core.response.curve import (
-        ResponseCurve,  # not earlier: in Blender, its own OpenImageIO has to come first
-    )
+    # Not earlier: in Blender, its own OpenImageIO has to come first.
+    from crfnet_core.response.curve import ResponseCurve
 
     table = np.loadtxt(root / "tests" / "data" / "plate_response.csv", delimiter=",", skiprows=1)
     return ResponseCurve.from_samples(table[:, 1])

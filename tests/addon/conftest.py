@@ -8,7 +8,6 @@ import pytest
 from blender_addon.work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate
 from crfnet.configs.portable import portable_config
 from crfnet.options import EstimateOptions
-from crfnet_core.estimate.options import AnalysisOptions
 from tests.helpers.images import write_image
 
 
@@ -38,23 +37,18 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
         color_space="sRGB",
         mode=ApplyMode.BAKE,
         folder=tmp_path / "out",
-        depth="float",
         overwrite=False,
         anchor=Anchor.WHITE,
         gray=0.5,
         stops=0.0,
         is_forced=False,
         stored=None,
-        prior="camera",
-        use_metadata=True,
     ):
-        analysis = AnalysisOptions(use_metadata=use_metadata)
-        options = EstimateOptions(model=fixed_model, prior=prior, analysis=analysis)
         return Job(
             plate=plate_from_file(path, is_sequence=is_sequence, color_space=color_space),
-            estimation=Estimation(options=options, is_forced=is_forced, stored=stored),
+            estimation=Estimation(options=EstimateOptions(model=fixed_model), is_forced=is_forced, stored=stored),
             exposure=Exposure(anchor=anchor, gray=gray, stops=stops),
-            output=Output(mode=mode, folder=folder, depth=depth, overwrite=overwrite),
+            output=Output(mode=mode, folder=folder, depth="float", overwrite=overwrite),
             config=str(running_config),
         )
 

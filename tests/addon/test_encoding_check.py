@@ -1,7 +1,5 @@
 """Plates that are logarithmic or linear are refused, by color space and by metadata."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -38,11 +36,10 @@ def test_the_configs_encoding_counts_for_more_than_the_name(encoding, expected):
 
 @pytest.fixture
 def check(make_job, running_config, plate_file):
-    """Check a file, taken for one of a color space of the running config."""
+    """Check a plate of a color space, by the running config or another one."""
 
-    def run(color_space="sRGB", path=plate_file, config=running_config):
-        plate = dataclasses.replace(make_job(path).plate, color_space=color_space)
-        check_is_encoded(plate, path, str(config))
+    def run(color_space, config=running_config):
+        check_is_encoded(make_job(color_space=color_space).plate, plate_file, str(config))
 
     return run
 

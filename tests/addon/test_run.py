@@ -14,7 +14,6 @@ from blender_addon.work.run import run
 from crfnet.errors import LutError, PlateError
 from crfnet.pipeline import estimates
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
-from crfnet_core.network import ResponseNetwork
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
@@ -71,14 +70,6 @@ def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, 
     assert run(job).primaries == REC709
     kept = dataclasses.replace(job, estimation=dataclasses.replace(job.estimation, primaries=DISPLAY_P3))
     assert run(kept).primaries == DISPLAY_P3
-
-
-def test_the_network_is_loaded_once(make_job, calls):
-    loads = calls(ResponseNetwork, "load")
-    estimates.load_network.cache_clear()
-    for _ in range(3):
-        run(make_job(mode=ApplyMode.NODES))
-    assert len(loads) == 1
 
 
 def test_a_gray_anchor_becomes_018(make_job):

@@ -26,12 +26,9 @@ def write(job, progress=None):
     return writers.write(job, LUT, 0.0, lambda: frames_of(job.plate), progress)
 
 
-def cancelled_after(steps):
-    def progress(done, total):
-        if done >= steps:
-            raise CancelledError("Cancelled; nothing was changed")
-
-    return progress
+def cancel_at_the_third(done, _total):
+    if done >= 3:
+        raise CancelledError("Cancelled; nothing was changed")
 
 
 @pytest.mark.parametrize("before", ["shot.1-2.", "shot.1-2x", "take#_", "a%02d_", "b$F4.", "[1-2]@@."])
@@ -55,12 +52,8 @@ def test_a_cancelled_bake_leaves_what_was_there(make_job, sequence_file, tmp_pat
     for name, content in earlier.items():
         (tmp_path / "out" / name).write_bytes(content)
     with pytest.raises(CancelledError):
-        write(job, cancelled_after(3))
+        write(job, cancel_at_the_third)
     assert tree(tmp_path / "out") == earlier
-
-
-def with_alpha(job, alpha_mode):
-    return dataclasses.replace(job, plate=dataclasses.replace(job.plate, alpha_mode=alpha_mode))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +81,8 @@ def test_alpha_is_taken_as_by_blender(tmp_path, alpha_mode, color, alpha, suffix
 
 def test_alpha_that_is_no_coverage_is_written_in_the_same_pass(make_job, tmp_path, codes):
     path = write_image(tmp_path / "a.png", np.dstack([codes, codes[..., :1]]), oiio__UnassociatedAlpha=1)
-    job, calls, target = with_alpha(make_job(path), "CHANNEL_PACKED"), [], tmp_path / "out" / "a_linear.exr"
+    job, calls, target = make_job(path), [], tmp_path / "out" / "a_linear.exr"
+    job = dataclasses.replace(job, plate=dataclasses.replace(job.plate, alpha_mode="CHANNEL_PACKED"))
     assert write(job, lambda *call: calls.append(call)) == writers.Written((target,))
     assert calls[-1] == (1, 1)
     assert np.abs(read_image(target)[..., :3] - CURVE.inverse(codes / 255)).max() < 1e-5

@@ -91,6 +91,19 @@ def in_editor():
 
 
 @pytest.fixture
+def set_working_space(addon):
+    """Change the working space until the end of the test; before Blender 5.0, it is the config's."""
+    if bpy.app.version < (5, 0, 0):
+        pytest.skip("this Blender cannot change its working space")
+
+    def change(name):
+        bpy.ops.wm.set_working_color_space(working_space=name, convert_colors=False)
+
+    yield change
+    change("Linear Rec.709")
+
+
+@pytest.fixture
 def interface(addon):
     """The context of an interactive session; the run that is under way at the end of the test is stopped."""
     from blender_addon.ui import running

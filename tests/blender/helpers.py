@@ -188,5 +188,10 @@ def labels(drawn):
     return [entry[1] for entry in drawn if entry[0] == "label"]
 
 
+def words_in(image, in_editor):
+    """The words of the panel of an Image Editor for an image, in one line."""
+    return " ".join(labels(drawn_in(image, in_editor)))
+
+
 def operators(drawn):
     return [entry[1:3] for entry in drawn if entry[0] == "operator"]

@@ -7,7 +7,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import apply, bpy, curve_of, drawn_in, estimate, group_node, labels, load, load_sequence, paint, reopen
+from .helpers import apply, bpy, curve_of, estimate, group_node, load, load_sequence, paint, reopen, words_in
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -25,7 +25,7 @@ def lines_of(in_editor):
     """Return which of the warnings the panel draws for an image."""
 
     def draw(image):
-        words = " ".join(labels(drawn_in(image, in_editor)))
+        words = words_in(image, in_editor)
         return [warning for warning in (CHANGED, EARLIER, GONE, UNSAVED, PAINTED, TWICE, WITHOUT) if warning in words]
 
     return draw
@@ -158,10 +158,10 @@ class TestWithoutTheGroup:
             tree.links.new(source, target)
         assert lines_of(image) == [WITHOUT]
         applied = "Applied with these settings."
-        assert applied not in " ".join(labels(drawn_in(image, in_editor)))
+        assert applied not in words_in(image, in_editor)
         apply(image)
         assert lines_of(image) == []
-        assert applied in " ".join(labels(drawn_in(image, in_editor)))
+        assert applied in words_in(image, in_editor)
 
     def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, lines_of):
         apply(image)

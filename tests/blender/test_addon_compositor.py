@@ -4,7 +4,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import IS_BLENDER_5, bpy, drawn_in, estimate, groups, labels, load, load_sequence
+from .helpers import IS_BLENDER_5, bpy, estimate, groups, load, load_sequence, words_in
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def test_a_compositor_that_is_switched_off_stays_off_and_report_and_panel_say_so
     estimate(plates[0], "NODES")
     assert not bpy.context.scene.use_nodes
     assert "switched off: tick Use Nodes" in capfd.readouterr().out
-    assert "switched off: tick Use Nodes" in " ".join(labels(drawn_in(plates[0], in_editor)))
+    assert "switched off: tick Use Nodes" in words_in(plates[0], in_editor)
 
 
 @pytest.mark.skipif(not IS_BLENDER_5, reason="before, the compositor belongs to the scene")

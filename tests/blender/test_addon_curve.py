@@ -5,7 +5,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import bpy, load
 
 #: Codes from here on of 8 bits, of 10 bits the same brightnesses; and the largest error, in stops.
 FIRST, STOPS = 8, 1e-3
@@ -16,10 +16,7 @@ def decoded(addon, tree, composited, tmp_path):
     """What the node group of a curve makes of brightnesses."""
     from blender_addon.scene.nodes import plate_group
 
-    plates = {
-        bits: bpy.data.images.load(str(write_image(tmp_path / f"{bits}.png", np.zeros((8, 8, 3), f"uint{bits}"))))
-        for bits in (8, 16)
-    }
+    plates = {bits: load(write_image(tmp_path / f"{bits}.png", np.zeros((8, 8, 3), f"uint{bits}"))) for bits in (8, 16)}
     source = tree.nodes.new("CompositorNodeImage")
     node = tree.nodes.new("CompositorNodeGroup")
 
@@ -28,7 +25,7 @@ def decoded(addon, tree, composited, tmp_path):
         pixels = np.tile(np.asarray(brightness, np.float32)[:, None], (8, 1, 3))
         if source.image:
             bpy.data.images.remove(source.image)
-        source.image = bpy.data.images.load(str(write_image(tmp_path / "brightness.exr", pixels)))
+        source.image = load(write_image(tmp_path / "brightness.exr", pixels))
         source.image.colorspace_settings.name = "Non-Color"
         tree.links.new(source.outputs["Image"], node.inputs["Image"])
         return composited(node.outputs[0], size=(len(brightness), 8))[0, :, 0]

@@ -8,16 +8,8 @@ import pytest
 from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.images import read_image
 
-from .helpers import bpy, curve_of, linear_shown, load, stored_estimate
+from .helpers import bpy, linear_shown, load, stored_estimate
 from .helpers import estimate as run
-
-
-@pytest.fixture
-def avif(addon, tmp_path, codes):
-    pillow = pytest.importorskip("PIL.Image", reason="needs Pillow to write AVIF")
-    path = tmp_path / "phone.avif"
-    pillow.fromarray(codes).save(path, quality=100, subsampling="4:4:4")
-    return path
 
 
 @pytest.fixture
@@ -28,13 +20,19 @@ def heic(root, tmp_path):
     return path
 
 
-def test_a_plate_that_blender_cannot_show_is_estimated_and_baked(addon, avif, tmp_path, estimate):
+def test_a_plate_that_blender_cannot_show_is_estimated_and_baked_and_its_light_is_shown(
+    addon, codes, tmp_path, estimate, in_editor
+):
+    pillow = pytest.importorskip("PIL.Image", reason="needs Pillow to write AVIF")
+    avif = tmp_path / "phone.avif"
+    pillow.fromarray(codes).save(avif, quality=100, subsampling="4:4:4")
     image = load(avif)
     run(image, "BAKE", depth="float")
     found = stored_estimate.restored(image)
     assert found.weights.tolist() == estimate(avif).weights.tolist()
     linear = found.curve.inverse(read_photo(avif).pixels)
     assert np.abs(read_image(tmp_path / "phone_linear.exr") - linear).max() < 1e-6
+    assert np.abs(linear_shown(image, in_editor)[..., :3] - linear).max() < 1e-5
 
 
 def test_where_blender_would_have_to_show_it_the_message_says_what_to_do(addon, heic):
@@ -42,13 +40,6 @@ def test_where_blender_would_have_to_show_it_the_message_says_what_to_do(addon, 
     with pytest.raises(RuntimeError, match=r"phone\.heic: Blender cannot show this format; choose Bake"):
         bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
     assert "camera_response" not in image
-
-
-def test_its_linear_plate_is_shown(addon, avif, in_editor):
-    image = load(avif)
-    run(image)
-    expected = curve_of(image).inverse(read_photo(avif).pixels)
-    assert np.abs(linear_shown(image, in_editor)[..., :3] - expected).max() < 1e-5
 
 
 def test_a_heic_is_decoded(addon, heic):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from .helpers import apply, bpy, drawn_in, labels, linear_shown
+from .helpers import apply, bpy, linear_shown, words_in
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -37,7 +37,7 @@ def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked
         with pytest.raises(RuntimeError, match=WHY):
             bpy.ops.crf.pick_gray("INVOKE_DEFAULT")
     assert state(linked) == before
-    assert WHY in " ".join(labels(drawn_in(linked, in_editor)))
+    assert WHY in words_in(linked, in_editor)
 
 
 def test_its_linear_plate_may_be_looked_at(linked, in_editor, codes, estimate, plate_file):

@@ -32,9 +32,9 @@ def operator(addon):
     return Driven
 
 
-def drive(operator, interface, seconds=60):
+def drive(operator, interface):
     """Send timer events until the operator ends; return how it ended."""
-    deadline = time.monotonic() + seconds
+    deadline = time.monotonic() + 60
     while time.monotonic() < deadline:
         ended = operator.modal(interface, TIMER)
         if ended != {"PASS_THROUGH"}:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from .helpers import apply, bpy, drawn_here, drawn_in, estimate, labels, operators
+from .helpers import apply, bpy, drawn_here, drawn_in, estimate, labels, operators, words_in
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -85,9 +85,7 @@ def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
     assert shown(image, in_editor) == ("Apply Again", True, False)
     estimate(image)  # another response, which is not applied
     assert shown(image, in_editor) == ("Apply", False, False)
-    assert "Its nodes keep the earlier response until you apply this one." in " ".join(
-        labels(drawn_in(image, in_editor))
-    )
+    assert "Its nodes keep the earlier response until you apply this one." in words_in(image, in_editor)
 
 
 def shown(image, in_editor):

@@ -10,22 +10,14 @@ from tests.helpers.images import write_image
 from .helpers import apply, bpy, drawn_in, estimate, group_node, load, load_sequence, operators, paint, plates
 
 
-@pytest.fixture
-def compositor(image, tree, in_editor):
-    """An estimated plate in the compositor; gives the image, the nodes and the function that finds the active plate."""
-    estimate(image, "NODES")
-
+def test_the_node_group_of_a_plate_stands_for_the_plate(image, tree, in_editor):
     def active(node):
         tree.nodes.active = node
         with in_editor("NODE_EDITOR") as space:
             space.node_tree = tree
             return plates.active_datablock(bpy.context)
 
-    return image, tree, active
-
-
-def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
-    image, tree, active = compositor
+    estimate(image, "NODES")
     group = group_node()
     (source,) = (node for node in tree.nodes if node.type == "IMAGE")
     assert active(source) == image

@@ -12,16 +12,6 @@ from .helpers import apply, bpy, curve_of, drawn_in, group_node, groups, labels,
 pytestmark = pytest.mark.usefixtures("estimated")
 
 
-@pytest.fixture
-def cube(image):
-    """A gray cube before the camera, in the middle of the picture."""
-    scene = bpy.context.scene
-    bpy.ops.mesh.primitive_cube_add()
-    bpy.ops.object.camera_add(location=(0, 0, 8))
-    scene.camera, scene.world = bpy.context.object, bpy.data.worlds.new("gray")
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
-
-
 def over():
     """The node before the output or the Camera Look, with the nodes that lead to its background and its foreground."""
     node = output().inputs[0].links[0].from_node
@@ -30,16 +20,13 @@ def over():
     return node, *(socket.links[0].from_node for socket in node.inputs if socket.type == "RGBA")
 
 
-def blur_the_render():
-    """Make a tree as an artist would."""
-    layers, blur = (scene_tree().nodes.new(f"CompositorNode{kind}") for kind in ("RLayers", "Blur"))
-    scene_tree().links.new(layers.outputs["Image"], blur.inputs["Image"])
-    scene_tree().links.new(blur.outputs["Image"], output().inputs[0])
-    return blur
-
-
-def test_the_render_stands_over_the_linear_plate(cube, image, codes, tmp_path):
+def test_the_render_stands_over_the_linear_plate(image, codes, tmp_path):
+    """It shows a gray cube before the camera, in the middle of the picture."""
     scene = bpy.context.scene
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.ops.object.camera_add(location=(0, 0, 8))
+    scene.camera, scene.world = bpy.context.object, bpy.data.worlds.new("gray")
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
     assert image.camera_response_settings.compose
     apply(image)
     assert scene.render.film_transparent
@@ -88,7 +75,9 @@ def test_the_panel_says_where_an_applied_plate_is_seen(image, tree, plate_file, 
 
 @pytest.mark.parametrize("choices", [{}, {"compose": True}])
 def test_nodes_of_the_artist_are_left_alone_or_on_demand_stay_in_front(image, tree, choices):
-    blur = blur_the_render()
+    layers, blur = (tree.nodes.new(f"CompositorNode{kind}") for kind in ("RLayers", "Blur"))
+    tree.links.new(layers.outputs["Image"], blur.inputs["Image"])
+    tree.links.new(blur.outputs["Image"], output().inputs[0])
     bpy.ops.crf.add_look(image=image.name)
     assert not image.camera_response_settings.compose
     apply(image, **choices)

@@ -2,17 +2,11 @@
 
 import pytest
 
-from .helpers import apply, bpy, compositor_tree, drawn_in, groups, labels, plates
+from .helpers import apply, bpy, compositor_tree, groups, plates, words_in
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
-
 APPLIED = "Applied with these settings."
-
-
-def words_on(image, in_editor):
-    """What the panel writes, in one line."""
-    return " ".join(labels(drawn_in(image, in_editor)))
 
 
 def twice(image):
@@ -39,7 +33,7 @@ def test_a_panel_reads_each_node_once_and_the_next_one_reads_it_again(image, tre
     group, read = groups(tree)[0], []
     monkeypatch.setattr(links, "datablock_of_node", lambda node: read.append(node) or plates.datablock_of_node(node))
     for draws in (1, 2):
-        words_on(image, in_editor)
+        words_in(image, in_editor)
         assert read.count(group) == draws
 
 
@@ -56,13 +50,13 @@ def test_two_scenes_are_linearized_once_each_and_keep_exposures_of_their_own(ima
     with bpy.context.temp_override(window=window):
         bpy.ops.scene.new(type=kind)
     other = window.scene
-    assert (APPLIED in words_on(image, in_editor)) == (kind == "FULL_COPY")
+    assert (APPLIED in words_in(image, in_editor)) == (kind == "FULL_COPY")
     apply(image, exposure=1)
     assert twice(image) == ""
     assert (exposures(first), exposures(other)) == ([0, 0], [1, 1] if kind == "FULL_COPY" else [1])  # with the look's
-    assert APPLIED in words_on(image, in_editor)
+    assert APPLIED in words_in(image, in_editor)
     window.scene = first
-    assert "The nodes of this scene have exposure 0.00 until you apply." in words_on(image, in_editor)
+    assert "The nodes of this scene have exposure 0.00 until you apply." in words_in(image, in_editor)
 
 
 def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):
@@ -86,8 +80,10 @@ def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):
     assert set(nodes_behind(blur)) == {end, *holders, *viewers}  # from inside, it is every holder
 
 
-def chained_groups(tree):
-    """Return a node group, and two nodes of a tree that hold it: output A of the first is linked to B of the second."""
+def test_what_the_second_of_two_chained_nodes_holds_is_behind_what_the_first_holds(addon, tree):
+    """Output A of the first is linked to input B of the second."""
+    from blender_addon.scene.nodes.links import nodes_behind
+
     mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
     for in_out in ("INPUT", "OUTPUT"):
         for name in "AB":
@@ -95,13 +91,6 @@ def chained_groups(tree):
     first, second = (tree.nodes.new("CompositorNodeGroup") for _ in range(2))
     first.node_tree = second.node_tree = mine
     tree.links.new(first.outputs["A"], second.inputs["B"])
-    return mine, first, second
-
-
-def test_what_the_second_of_two_chained_nodes_holds_is_behind_what_the_first_holds(addon, tree):
-    from blender_addon.scene.nodes.links import nodes_behind
-
-    mine, first, second = chained_groups(tree)
     start, before, behind, end = (
         mine.nodes.new(kind)
         for kind in ("NodeGroupInput", "CompositorNodeBlur", "CompositorNodeBlur", "NodeGroupOutput")

@@ -114,19 +114,16 @@ def test_a_file_made_under_another_config_gives_the_same_light(shader, image, co
     assert np.abs(pixels[..., :3] - expected).max() < 1e-5, log
 
 
-@pytest.mark.skipif(not IS_BLENDER_5, reason="the working space is the config's before Blender 5.0")
-def test_a_working_space_that_was_changed_counts_when_the_plate_is_applied_again(shader, image, codes):
+def test_a_working_space_that_was_changed_counts_when_the_plate_is_applied_again(
+    shader, image, codes, set_working_space
+):
     from blender_addon.scene.color_management import running_config
 
     shader.show(image, response)
-    bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
-    try:
-        assert "The working space has changed" in words(shader.show(image))
-        assert "The working space has changed" not in words(shader.show(image, lambda: apply(image)))
-        light = shader.light()
-    finally:
-        bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
-    light = converted(loaded(running_config()), "ACEScg", "Linear Rec.709", light)
+    set_working_space("ACEScg")
+    assert "The working space has changed" in words(shader.show(image))
+    assert "The working space has changed" not in words(shader.show(image, lambda: apply(image)))
+    light = converted(loaded(running_config()), "ACEScg", "Linear Rec.709", shader.light())
     assert np.abs(light - curve_of(image).inverse(codes / 255)).max() < 1e-5
 
 

@@ -4,16 +4,12 @@ import numpy as np
 import pytest
 
 from crfnet.configs.files import write_config
-from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.luts.files import write_lut
-from crfnet.luts.lut1d import inverse_response_lut
-from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.configs import LUT, SPACE
 from tests.helpers.images import write_image
 
 from .helpers import load, scene_tree
-
-LUT = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))
 
 #: All 8-bit codes; and floats below 0 and above 1.
 CODES = np.repeat(np.arange(256, dtype=np.uint8).reshape(16, 16, 1), 3, axis=2)
@@ -31,9 +27,8 @@ bpy.context.scene.view_settings.view_transform = "Standard"
 
 @pytest.mark.parametrize(("name", "samples"), [("codes.png", CODES), ("floats.exr", FLOATS)])
 def test_blender_linearizes_a_plate(addon, composited, rendered_anew, tmp_path, tolerance, name, samples):
-    write_lut(tmp_path / "plate01.spi1d", LUT)
-    space = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",))
-    write_config(tmp_path / "config.ocio", portable_config([space]), check={"CRF plate01": LUT})
+    write_lut(tmp_path / SPACE.lut_file, LUT)
+    write_config(tmp_path / "config.ocio", portable_config([SPACE]), check={SPACE.name: LUT})
     node = scene_tree().nodes.new("CompositorNodeImage")
     node.image = load(write_image(tmp_path / name, samples))
     composited(node.outputs["Image"], size=(16, 16))

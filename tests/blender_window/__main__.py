@@ -6,7 +6,6 @@ import argparse
 import os
 import shutil
 import sys
-import traceback
 import unittest
 from pathlib import Path
 
@@ -36,11 +35,6 @@ class _Result(unittest.TextTestResult):
     def addFailure(self, test, err):
         super().addFailure(test, err)
         self.stream.writeln(self.failures[-1][1])
-
-    def addSubTest(self, test, subtest, err):
-        super().addSubTest(test, subtest, err)
-        if err is not None:
-            self.stream.writeln("".join(traceback.format_exception(*err)))
 
 
 def main() -> int:

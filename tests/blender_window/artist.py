@@ -103,39 +103,36 @@ class Artist:
                 return x, (rows[0] + rows[-1]) // 2
         raise LookupError(f"there is no button {command}...) in the sidebar")
 
-    def press(self, command: str = ESTIMATE, position: tuple[int, int] | None = None) -> float:
-        """Press a button of the sidebar, which is found unless its position is given; return the time of the click.
+    def press(self, command: str = ESTIMATE, position: tuple[int, int] | None = None) -> None:
+        """Press a button of the sidebar, which is found unless its position is given.
 
         Blender ignores a click on a button that is not lit yet, as when it reads the movement and the click at once.
         """
         place = position or self.find(command)
         self.wait(lambda: self._is_lit(command, *place), f"the button {command}...) is lit")
-        return self.screen.click(*place)
+        self.screen.click(*place)
 
-    def start(self, command: str = ESTIMATE) -> float:
-        """Press a button that starts a run, and wait until it runs or has reported; return the time of the click."""
+    def start(self, command: str = ESTIMATE) -> None:
+        """Press a button that starts a run, and wait until it runs or has reported."""
         position, reports = self.find(command), self._reports()
         self.call("runs.watch")
-        clicked = self.press(command, position)
+        self.press(command, position)
         self.wait(lambda: self.call("runs.has_started") or self._reports() > reports, "the run starts", MOMENT)
-        return clicked
 
-    def run(self, command: str = ESTIMATE) -> float:
-        """Press a button that starts a run, and wait until it has ended; return how long it took in seconds."""
-        clicked = self.start(command)
-        return self.wait_for_end() - clicked
+    def run(self, command: str = ESTIMATE) -> None:
+        """Press a button that starts a run, and wait until it has ended."""
+        self.start(command)
+        self.wait_for_end()
 
     def apply(self) -> None:
         """Press Estimate, and Apply when it has ended: the two clicks from a photograph to its light."""
         self.run()
         self.run(APPLY)
 
-    def wait_for_end(self) -> float:
-        """Wait until the run has ended; return when that was, or was found, by `time.monotonic`."""
-        if not self.call("runs.has_started"):  # it was too short to be seen
-            return time.monotonic()
-        self.wait(lambda: self.call("runs.ended") is not None, "the run ends", RUN)
-        return self.call("runs.ended")
+    def wait_for_end(self) -> None:
+        """Wait until the run has ended, unless it was too short to be seen."""
+        if self.call("runs.has_started"):
+            self.wait(lambda: self.call("runs.has_ended"), "the run ends", RUN)
 
     def _is_lit(self, command: str, x: int, y: int) -> bool:
         """Move the mouse to a pixel, and return whether Blender has lit the button of a command there."""

@@ -20,9 +20,6 @@ from tests.helpers.images import make_photograph, read_image, write_image
 #: The bundled photograph.
 PLATE = Path(__file__).resolve().parent.parent / "data" / "plate.jpg"
 
-#: Plates whose estimate and linear values are compared with the add-on.
-COMPARED = ("plate.jpg",)
-
 #: Size of the large plate, 12 megapixels.
 LARGE = (4000, 3000)
 
@@ -45,16 +42,12 @@ def make_plates(folder: Path) -> None:
 
 
 def main(folder: Path) -> int:
-    """Write the plates, and what the command says of them, into a folder; return the exit code of the command."""
+    """Write the plates, and what the command makes of the first, into a folder; return the exit code of the command."""
     make_plates(folder / "plates")
-    for name in COMPARED:
-        out = folder / "expected" / Path(name).with_suffix("")
-        arguments = ["estimate", str(folder / "plates" / name), "--out", str(out), "--depth", "float", "--no-sheet"]
-        with contextlib.redirect_stdout(io.StringIO()):
-            code = crfnet([*arguments, "--overwrite"])
-        if code:
-            return code
-    return 0
+    out = folder / "expected" / "plate"
+    arguments = ["estimate", str(folder / "plates" / "plate.jpg"), "--out", str(out), "--depth", "float", "--no-sheet"]
+    with contextlib.redirect_stdout(io.StringIO()):
+        return crfnet([*arguments, "--overwrite"])
 
 
 if __name__ == "__main__":

@@ -93,14 +93,12 @@ class Screen:
         """Move the mouse to a pixel."""
         self._xdotool("mousemove", x, y)
 
-    def click(self, x: int, y: int) -> float:
-        """Click with the left button on a pixel; return the time of the click in seconds, by `time.monotonic`."""
+    def click(self, x: int, y: int) -> None:
+        """Click with the left button on a pixel."""
         self.move(x - 1, y)
         self.move(x, y)
         time.sleep(2 * PAUSE)
-        clicked = time.monotonic()
         self._xdotool("click", 1)
-        return clicked
 
     def key(self, name: str) -> None:
         """Press a key, such as ``Escape`` or ``ctrl+z``."""

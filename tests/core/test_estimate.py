@@ -230,13 +230,9 @@ def test_a_small_photograph_is_named(shape):
         estimate_response(small, network=FakeNetwork([]))
 
 
-@pytest.fixture(scope="module")
-def bundled(plate, fixed_model):
-    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model))
-
-
-def test_evidence_for_the_true_response_brings_the_answer_near_it(bundled, true_response):
+def test_evidence_for_the_true_response_brings_the_answer_near_it(plate, fixed_model, true_response):
     """The fixed model knows the bundled photograph's response, but not which response of the bank it is."""
+    bundled = estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model))
     assert estimation_error(true_response, bundled.curve) < 1
     project = EmorBasis.load().project
     assert np.linalg.norm((bundled.weights - project(true_response.brightness))[:5]) < 1

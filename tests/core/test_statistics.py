@@ -13,15 +13,11 @@ def parts(window):
     return unpack(window_statistics(window))
 
 
-@pytest.fixture
-def smooth():
+def test_the_vector_holds_the_parts_of_every_cue():
     rng, position = np.random.default_rng(0), np.linspace(0, 9, 227)
     light = np.sin(position)[:, None] + np.cos(2 * position)[None, :] + 0.1 * rng.standard_normal((227, 227))
     light = (light - light.min()) / np.ptp(light)
-    return np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
-
-
-def test_the_vector_holds_the_parts_of_every_cue(smooth):
+    smooth = np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
     found = window_statistics(smooth)
     assert found.shape == (LENGTH,)
     assert found.dtype == np.float32

@@ -31,10 +31,6 @@ def documents(root):
     return sorted({path for pattern in DOCUMENTS for path in root.glob(pattern)})
 
 
-def dotted_names(root):
-    return sorted({name for path in documents(root) for name in DOTTED.findall(path.read_text(encoding="utf-8"))})
-
-
 def exists(root, name):
     """Whether a dotted name is a module or a name in one; of training, whose torch need not be there, by its source."""
     parts = name.split(".")
@@ -60,7 +56,7 @@ def is_in(root, module, names):
 
 
 def test_every_function_that_a_document_names_is_there(root):
-    names = dotted_names(root)
+    names = {name for path in documents(root) for name in DOTTED.findall(path.read_text(encoding="utf-8"))}
     assert len(names) > 30
     assert not [name for name in names if not exists(root, name)]
 

@@ -8,7 +8,7 @@ from crfnet.configs.derived import write_derived_config
 from crfnet.configs.looks import read_looks
 from crfnet.configs.sources import find_config
 from crfnet_core.errors import CRFNetError
-from tests.helpers.configs import loaded
+from tests.helpers.configs import converted, loaded
 from tests.helpers.looks import add, all_names, write_look
 from tests.helpers.mutations import mutated, mutated_text
 
@@ -32,15 +32,12 @@ def seeds(tmp_path_factory, root):
 
 def conversions(config, names):
     """Return what becomes of a few colors, or None where OpenColorIO refuses, for each color space."""
-    results = []
+    results, colors = [], np.linspace(0, 1, 12).reshape(-1, 3)
     for name in names:
-        pixels = np.linspace(0, 1, 12, dtype=np.float32).reshape(-1, 3)
         try:
-            config.getProcessor(name, "scene_linear").getDefaultCPUProcessor().applyRGB(pixels)
+            results.append(converted(config, name, "scene_linear", colors).tolist())
         except (OCIO.Exception, OCIO.ExceptionMissingFile):
             results.append(None)
-        else:
-            results.append(pixels.tolist())
     return results
 
 

@@ -1,4 +1,5 @@
 import shutil
+from functools import partial
 
 import numpy as np
 import pytest
@@ -65,11 +66,7 @@ def read_origin(path):
     " ".join(origin.words).encode()
 
 
-def read_encoded(path):
-    return read_frame(path, is_encoded=True)
-
-
-@pytest.mark.parametrize("read", [read_origin, read_encoded])
+@pytest.mark.parametrize("read", [read_origin, partial(read_frame, is_encoded=True)], ids=["photograph", "plate"])
 def test_damaged_images_are_read_or_refused_in_one_line(fuzz, refused, seeds, tmp_path, read):
     names = list(seeds)
     assert len(names) > 20

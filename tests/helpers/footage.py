@@ -30,12 +30,11 @@ def quantized(brightness, bits=8):
     return (np.rint(np.clip(brightness, 0, 1) * largest) / largest).astype(np.float32)
 
 
-def log_picture(name, *, seed=0, bits=8):
+def log_picture(name):
     """Return log footage of the scene in a published curve, with some noise of the sensor."""
-    light = scene_light(seed=seed)
-    light = np.minimum(light, 0.18 * 2**4.8)
-    noise = np.random.default_rng(seed).standard_normal(light.shape) * np.sqrt(2e-5 * light + 9e-8)
-    return quantized(LOG_CURVES[name](light + 0.002 + noise), bits)
+    light = np.minimum(scene_light(), 0.18 * 2**4.8)
+    noise = np.random.default_rng(0).standard_normal(light.shape) * np.sqrt(2e-5 * light + 9e-8)
+    return quantized(LOG_CURVES[name](light + 0.002 + noise))
 
 
 def ordinary_picture(*, seed=0):
@@ -43,6 +42,6 @@ def ordinary_picture(*, seed=0):
     return quantized(srgb_encode(np.clip(scene_light(seed=seed) * 2.5 - 0.03, 0, 1)))
 
 
-def limited_range_picture(*, seed=0):
+def limited_range_picture():
     """Return the codes of an ordinary picture, black at 16 and white at 235 as in video, uint8 (480, 480, 3)."""
-    return np.rint(16 + 219 * ordinary_picture(seed=seed).astype(np.float64)).astype(np.uint8)
+    return np.rint(16 + 219 * ordinary_picture().astype(np.float64)).astype(np.uint8)

@@ -43,12 +43,6 @@ def estimate(found):
     return make
 
 
-@pytest.fixture
-def stored(estimate):
-    """An estimate that the first version of the add-on stored: no stops, families, prior or metadata."""
-    return dataclasses.replace(estimate(), shape_uncertainty=math.nan, families={}, prior="", origins=())
-
-
 def test_the_lines_of_an_estimate(estimate):
     *lines, windows = words.verdict_lines(estimate())
     assert lines == [
@@ -138,7 +132,8 @@ def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
     assert not words.verdict_lines(estimate(**fields, origins=(), windows=()))[0].endswith(asked)
 
 
-def test_what_an_earlier_version_did_not_store_is_left_out(stored):
+def test_what_an_earlier_version_did_not_store_is_left_out(estimate):
+    stored = dataclasses.replace(estimate(), shape_uncertainty=math.nan, families={}, prior="", origins=())
     *lines, _ = words.verdict_lines(stored)
     assert lines == [
         "The estimate is usable: look at the linear plate before you rely on it.",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import bpy
 import editors
 
@@ -13,8 +11,8 @@ IDENTIFIER, MODULE = "crf_response", "bl_ext.user_default.crf_response"
 #: Seconds between two looks at whether a run has ended: at every turn of Blender's main loop, so that none is missed.
 INTERVAL = 0.0
 
-#: When the run that was watched was first and last seen, and when it was seen to have ended, by `time.monotonic`.
-_times: dict[str, float] = {}
+#: What was seen of the run that is watched: "started", "ended".
+_seen: set[str] = set()
 
 
 def install(path: str) -> bool:
@@ -42,21 +40,21 @@ def running() -> list[str]:
     return [found.bl_idname for found in known if found.bl_idname.startswith("CRF_OT")]
 
 
-def can_run(operator: str = "estimate_response") -> bool:
-    """Return whether an operator of the add-on may be started in the Image Editor."""
+def can_run() -> bool:
+    """Return whether an estimate may be started in the Image Editor."""
     with editors.context("IMAGE_EDITOR"):
-        return getattr(bpy.ops.crf, operator).poll()
+        return bpy.ops.crf.estimate_response.poll()
 
 
 def watch() -> None:
-    """Note when the next run starts and ends."""
-    _times.clear()
+    """Note that the next run starts and ends."""
+    _seen.clear()
 
     def look() -> float | None:
         if running():
-            _times.setdefault("started", time.monotonic())
-        elif "started" in _times:
-            _times["ended"] = time.monotonic()
+            _seen.add("started")
+        elif "started" in _seen:
+            _seen.add("ended")
             return None
         return INTERVAL
 
@@ -65,12 +63,12 @@ def watch() -> None:
 
 def has_started() -> bool:
     """Return whether the run that is watched was seen."""
-    return "started" in _times
+    return "started" in _seen
 
 
-def ended() -> float | None:
-    """Return when the run that is watched ended, by `time.monotonic`; None before that."""
-    return _times.get("ended")
+def has_ended() -> bool:
+    """Return whether the run that is watched was seen to end."""
+    return "ended" in _seen
 
 
 def quit() -> None:

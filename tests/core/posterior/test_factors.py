@@ -1,14 +1,9 @@
 import pytest
 
-from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
+from crfnet_core.photograph.metadata import Device, with_stated_device
 from crfnet_core.posterior import Family
 from crfnet_core.posterior.factors import FACTORS, family_factors
-
-OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": (3,) * 64, "file_format": "JPEG"}
-
-
-def origin(**fields):
-    return file_origin(FileMetadata(**{"width": 3504, "height": 2336, "file_format": "JPEG"} | fields))
+from tests.core.test_file_origin import OWN_CAMERA, origin
 
 
 def largest(**fields):

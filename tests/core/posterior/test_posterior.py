@@ -7,12 +7,6 @@ from crfnet_core.response.metrics import estimation_error, shape_error
 from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for
 
 
-@pytest.fixture(scope="module")
-def blurred(bank):
-    """A posterior that no response has alone."""
-    return Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3], precision=1.0)])
-
-
 def curves(bank):
     return [ResponseCurve.from_samples(row) for row in bank.brightness]
 
@@ -116,7 +110,9 @@ def test_the_answer_is_the_geometric_mean_of_the_inverses(bank):
     assert estimation_error(expected, posterior.curve) < 0.15
 
 
-def test_the_expected_errors_are_means_of_the_metrics_over_the_bank(blurred, bank):
+def test_the_expected_errors_are_means_of_the_metrics_over_the_bank(bank):
+    """Of a posterior that no response has alone."""
+    blurred = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3], precision=1.0)])
     errors = [estimation_error(true, blurred.curve) for true in curves(bank)]
     shapes = [shape_error(true, blurred.curve) for true in curves(bank)]
     assert blurred.expected_error == pytest.approx(blurred.weights @ errors, rel=1e-2)

@@ -1,7 +1,6 @@
 import numpy as np
-import PyOpenColorIO as OCIO
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -12,26 +11,6 @@ from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.refusals import refused
 
 EXTENDED = (-0.125, 1.125)
-
-curves = arrays(np.float64, st.integers(2, 40), elements=st.floats(0, 1)).map(
-    lambda steps: ResponseCurve.from_samples(np.cumsum(steps**6 + 1e-9))
-)
-
-
-def codes(bits):
-    return (np.arange(2**bits) / (2**bits - 1)).astype(np.float32)
-
-
-def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
-    """Values through OpenColorIO's own 1D LUT; not optimized, or one that is nearly the identity would become it."""
-    table = OCIO.Lut1DTransform(length=lut.values.size, inputHalfDomain=False)
-    table.setData(np.repeat(lut.values, 3).astype(np.float32))
-    low, high = lut.domain
-    group = OCIO.GroupTransform([OCIO.RangeTransform(low, high, 0, 1), table])
-    processor = OCIO.Config.CreateRaw().getProcessor(group, direction)
-    pixels = np.repeat(np.asarray(values, dtype=np.float32), 3)
-    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
-    return pixels[::3]
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
@@ -131,9 +110,16 @@ def test_strictly_increasing_moves_values_by_no_more_than_their_number_of_units(
 def test_the_documented_lengths_are_exact_on_codes(bits, domain, length, tolerance):
     curve = ResponseCurve.gamma(2.2)
     lut = inverse_response_lut(curve, length=length, domain=domain)
-    wanted = curve.inverse(np.arange(2**bits) / (2**bits - 1))
-    assert np.abs(lut.apply(np.arange(2**bits) / (2**bits - 1)) - wanted).max() < tolerance.lut / 2
-    assert np.abs(lut.apply(codes(bits)) - wanted).max() < tolerance.lut
+    codes = np.arange(2**bits) / (2**bits - 1)
+    wanted = curve.inverse(codes)
+    assert np.abs(lut.apply(codes) - wanted).max() < tolerance.lut / 2
+    assert np.abs(lut.apply(codes.astype(np.float32)) - wanted).max() < tolerance.lut
+
+
+def test_where_a_response_jumps_the_entries_still_increase_and_all_codes_come_back():
+    lut = inverse_response_lut(ResponseCurve.from_samples(np.arange(1024) > 511), length=65536)
+    codes = np.arange(256, dtype=np.float32) / 255
+    assert np.rint(lut.apply_inverse(lut.apply(codes)) * 255).tolist() == list(range(256))
 
 
 def test_super_whites_continue_with_the_slope_of_the_last_code():
@@ -164,20 +150,6 @@ def test_the_slope_beyond_a_clipped_end_is_bounded():
 def test_choices_that_make_no_lut_of_a_response_are_refused(code, choice):
     with refused(LutError, code):
         inverse_response_lut(ResponseCurve.gamma(), **choice)
-
-
-@settings(max_examples=100, deadline=None)
-@given(curves, st.sampled_from([(4081, (0.0, 1.0)), (5101, EXTENDED), (65536, (0.0, 1.0))]))
-def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(curve, grid):
-    lut = inverse_response_lut(curve, length=grid[0], domain=grid[1])
-    inputs = np.random.default_rng(0).uniform(-0.3, 1.3, 2000).astype(np.float32)
-    assert np.abs(lut.apply(inputs) - ocio_applied(lut, inputs)).max() < 1e-6
-    outputs = np.linspace(-0.3, 1.3, 2000, dtype=np.float32)
-    backwards = ocio_applied(lut, outputs, OCIO.TRANSFORM_DIR_INVERSE)
-    assert np.abs(lut.apply_inverse(outputs) - backwards).max() < 1e-6
-    back = ocio_applied(lut, ocio_applied(lut, codes(8)), OCIO.TRANSFORM_DIR_INVERSE)
-    assert np.rint(back * 255).tolist() == list(range(256))
-    assert np.rint(lut.apply_inverse(lut.apply(codes(8))) * 255).tolist() == list(range(256))
 
 
 @pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])

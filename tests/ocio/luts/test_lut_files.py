@@ -28,10 +28,6 @@ CURVES = {
 }
 
 
-def codes(bits):
-    return (np.arange(2**bits) / (2**bits - 1)).astype(np.float32)
-
-
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 class TestRoundTrip:
@@ -50,7 +46,7 @@ class TestRoundTrip:
     def test_opencolorio_gives_all_codes_back(self, tmp_path, suffix, name, length, bits):
         path = tmp_path / f"a{suffix}"
         write_lut(path, inverse_response_lut(CURVES[name], length=length))
-        linear = through_lut(path, codes(bits))
+        linear = through_lut(path, np.arange(2**bits) / (2**bits - 1))
         # Hosts use the default optimization, whose inverse is approximate; it must still give every code back.
         for optimization in (OCIO.OPTIMIZATION_LOSSLESS, OCIO.OPTIMIZATION_DEFAULT):
             back = through_lut(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)

@@ -4,35 +4,22 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from crfnet.cli.main import main
 from crfnet.errors import PlateError
-from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.plates import exr
 from crfnet.plates.frame_files import read_frame
 from tests.helpers.images import write_image
+from tests.helpers.plates import linearize
 from tests.helpers.reference_exr import OpenEXR, read_reference
 from tests.helpers.refusals import refused
 
 
-@pytest.fixture
-def lut(tmp_path):
-    path = tmp_path / "square.spi1d"
-    write_lut(path, Lut1D(np.linspace(0, 1, 4081) ** 2))
-    return path
-
-
-def linearized(lut, tmp_path, codes, *options):
-    """Return the linear plate that the command writes of 8-bit codes, with straight alpha."""
-    write_image(tmp_path / "plate.png", codes, oiio__UnassociatedAlpha=1)
-    main(["linearize", str(tmp_path / "plate.png"), "--lut", str(lut), "--out", str(tmp_path / "l.exr"), *options])
-    return tmp_path / "l.exr"
-
-
 @pytest.mark.parametrize(("depth", "sample"), [("half", np.float16), ("float", np.float32)])
-def test_the_pixels_are_the_entries_of_the_lut(lut, tmp_path, depth, sample):
+def test_the_pixels_are_the_entries_of_the_lut(tmp_path, depth, sample):
     codes = np.random.default_rng(0).integers(0, 256, (61, 47, 3), dtype=np.uint8)
-    header, pixels = read_reference(linearized(lut, tmp_path, codes, "--depth", depth))
+    plate, out = write_image(tmp_path / "plate.png", codes), tmp_path / "linear.exr"
+    linearize(plate, out, Lut1D(np.linspace(0, 1, 4081) ** 2), depth=depth)
+    header, pixels = read_reference(out)
     assert pixels.dtype == sample
     np.testing.assert_array_equal(pixels, ((codes / 255.0) ** 2).astype(np.float32).astype(sample))
     assert header["compression"] == OpenEXR.ZIPS_COMPRESSION

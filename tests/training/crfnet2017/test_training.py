@@ -36,18 +36,6 @@ def run(scenes, validation, tmp_path_factory):
     return folder
 
 
-@pytest.fixture(scope="module")
-def model(run, tmp_path_factory):
-    """The model folder of the run, with its golden file in it."""
-    model = tmp_path_factory.mktemp("model") / "crfnet2017"
-    model.mkdir()
-    network = rounded(load_network(run))
-    export_onnx(network, WINDOWED, model / "model.onnx")
-    write_config(model, WINDOWED, read_run(run))
-    write_golden(network, WINDOWED, model / "golden.npz")
-    return model
-
-
 def states(folder):
     """The average and the moving weights of the last checkpoint of a run."""
     state = torch.load(folder / "last.pt", weights_only=True)
@@ -143,7 +131,13 @@ def test_the_second_stage_takes_all_but_the_head(tmp_path):
     assert not second.head.weight.any()
 
 
-def test_the_model_folder_answers_what_torch_answers(model):
+def test_the_model_folder_answers_what_torch_answers(run, tmp_path):
+    model = tmp_path / "crfnet2017"
+    model.mkdir()
+    network = rounded(load_network(run))
+    export_onnx(network, WINDOWED, model / "model.onnx")
+    write_config(model, WINDOWED, read_run(run))
+    write_golden(network, WINDOWED, model / "golden.npz")
     assert assert_parity(model, model / "golden.npz") < PARITY
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
     windows = np.full((2, 227, 227, 3), 0.5, np.float32)

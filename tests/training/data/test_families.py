@@ -11,14 +11,10 @@ from training.data.families import DEVELOPED_HEADROOM, SHOULDER, ResponseFamilie
 POWERS = {Family.PHONE: 0.4, Family.COMPACT: 0.45, Family.CAMERA: 0.5}
 
 
-@pytest.fixture
-def families():
-    film = CurveSource(UNIFORM ** np.array([[0.3], [0.7]]), (), camera_fraction=0)
-    return ResponseFamilies(lambda family, count, rng: np.tile(UNIFORM ** POWERS[family], (count, 1)), film)
-
-
 @pytest.mark.parametrize("family", [family for family in Family if family is not Family.UNEXPLAINED])
-def test_responses_of_every_family_rise_from_0_to_1(families, family):
+def test_responses_of_every_family_rise_from_0_to_1(family):
+    film = CurveSource(UNIFORM ** np.array([[0.3], [0.7]]), (), camera_fraction=0)
+    families = ResponseFamilies(lambda family, count, rng: np.tile(UNIFORM ** POWERS[family], (count, 1)), film)
     drawn = families.draw(family, 20, np.random.default_rng(0))
     assert drawn.shape == (20, 1024)
     assert (np.diff(drawn, axis=1) >= -1e-12).all()

@@ -7,7 +7,6 @@ from training.data.families import with_headroom
 from training.data.scenes import LUMINANCE
 from training.evaluation.baselines import (
     constant_curves,
-    mean_in_log_irradiance,
     nearest_power,
     oracle_curves,
     with_best_headroom,
@@ -38,12 +37,6 @@ def test_the_nearest_power_of_an_s_curve_is_the_least_of_a_grid():
     true = ResponseCurve.from_samples(UNIFORM**0.4 * (2 - UNIFORM**0.4))
     grid = [np.linalg.norm(true.brightness - UNIFORM**p) for p in np.linspace(0.05, 2, 2000)]
     assert estimation_error(true, nearest_power(true)) == pytest.approx(min(grid), abs=2e-3)
-
-
-def test_the_mean_in_log_irradiance_of_two_powers_is_the_power_between():
-    """By hand: g1 = B ** 1.5 and g2 = B ** 2.5 have the geometric mean B ** 2."""
-    mean = mean_in_log_irradiance([ResponseCurve.gamma(1.5), ResponseCurve.gamma(2.5)])
-    assert estimation_error(ResponseCurve.gamma(2.0), mean) < 0.02
 
 
 def test_the_oracle_chooses_the_headroom_and_keeps_the_shape():
