@@ -93,6 +93,11 @@ def text_attribute(header: Any, name: str) -> str:
     return str(header.get_bytes_attribute(name).decode(errors="surrogateescape"))
 
 
+def channel_names(header: Any) -> list[str]:
+    """Return the names of all channels, bytes that are not UTF-8 as lone surrogates."""
+    return [_decoded(partial(header.channel_name, channel)) for channel in range(header.nchannels)]
+
+
 def _decoded(read: Callable[[], Any]) -> str:
     """Return a text of OpenImageIO; bytes that are not UTF-8 become lone surrogates, as from version 3.2 on."""
     try:

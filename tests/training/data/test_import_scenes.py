@@ -86,3 +86,10 @@ def test_an_exr_that_calls_itself_encoded_is_refused(tmp_path):
     write_image(path, np.zeros((240, 240, 3), np.float16), colorInteropID="srgb_rec709_scene")
     with pytest.raises(PhotoError, match="calls itself srgb_rec709_scene, which is not scene-linear"):
         linear_scene(path)
+
+
+def test_channels_are_named_even_if_their_names_are_not_utf8(tmp_path):
+    path = write_float(tmp_path / "odd.exr", np.full((240, 240, 2), 0.5), names=("X", "Zone"))
+    path.write_bytes(path.read_bytes().replace(b"Zone", b"Z\xffne"))
+    with pytest.raises(PhotoError, match="found X, Z\udcffne"):
+        linear_scene(path)
