@@ -28,9 +28,8 @@ Record = dict[str, Any]
 def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: str) -> Record:
     """Write run.json for a run that begins; for one that goes on, check it and add the resumption; return the record.
 
-    `recipe` is the whole configuration, in values that JSON knows; `seed` decides the initial weights and the order of
-    the data; `data` comes from `data_record`, and `start` names the weights that the run starts from. Raise SystemExit
-    if the folder holds a run of another recipe, seed or start, or on other data.
+    `recipe` is the whole configuration, in values that JSON knows; `data` comes from `data_record`, and `start` names
+    the weights that the run starts from. Raise SystemExit if the folder holds a run that differs in one of these.
     """
     wanted = json.loads(json.dumps({"seed": seed, "start": start, "recipe": recipe, "data": data}))
     path = folder / RUN_FILE

@@ -158,9 +158,8 @@ def train(
 ) -> TrainingState:
     """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
 
-    It trains on the device of the scenes. The folder `run` gets run.json, log.csv and the checkpoints last.pt and
-    best.pt. `digest` identifies the data. Raise SystemExit if `run` holds a run with another configuration or other
-    data.
+    The device is the scenes'. The folder `run` gets run.json, log.csv, last.pt and best.pt. `digest` identifies the
+    data. Raise SystemExit if `run` holds a run with another configuration or other data.
     """
     start = "random weights" if config.init == "none" else config.init
     record_run(run, recipe=asdict(config), seed=config.seed, data={"sha256": digest}, start=start)

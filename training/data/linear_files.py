@@ -39,11 +39,8 @@ DEVELOPMENT: dict[str, Any] = {
 def linear_scene(path: Path, *, is_panorama: bool = False) -> tuple[NDArray[np.float16], list[str]]:
     """Return the scene as it will be written, float16 (H, W, 3) in [0, 65000], and notes on what was done to it.
 
-    In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. OpenEXR and Radiance HDR are
-    multiplied by the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`. Of a panorama, which
-    is equirectangular and twice as wide as high, the middle `BAND` of the rows is kept. Each n x n samples become one,
-    their mean, for the largest n that leaves the shorter side `LEAST_SIDE`. Raise PhotoError or OSError if the file is
-    absent, damaged, not scene-linear, too small or black, or has other sides than a panorama.
+    Each n x n samples become their mean, for the largest n that leaves the shorter side `LEAST_SIDE`. Raise PhotoError
+    or OSError if the file is absent, damaged, not scene-linear, too small or black, or no panorama where one is needed.
     """
     with path.open("rb") as file:
         head = file.read(16)

@@ -156,9 +156,8 @@ def caution(row: Mapping[str, str]) -> str:
 def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
     """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
 
-    The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
-    quantization tables. The size in EXIF, the profile and the XMP history are lost, except where the photograph is the
-    original byte for byte (`is_original`): `read_photo` finds them.
+    `crop`, a JPEG cut without recompression, has the original's quantization tables. The size in EXIF, the profile and
+    the XMP history are lost.
     """
     jpeg = read_jpeg_header(crop)
     width, height = (int(side) for side in row["original_size"].split("x"))

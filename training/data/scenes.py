@@ -47,9 +47,8 @@ class Scene:
 def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[tuple[str, bool]]]:
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
 
-    A quarter of the perspective photographs is in the test split and none in the validation split; panoramas fill up
-    these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
-    only, so that they move no other.
+    A quarter of the perspective photographs is in the test split, none in the validation split; panoramas fill up both.
+    Scenes that `training.data.import_scenes` added, listed if `with_imported`, only train, so that they move no other.
     """
     listed: dict[bool, list[tuple[str, bool]]] = {False: [], True: []}
     for row in table_rows(folder / "manifest.csv"):

@@ -118,9 +118,8 @@ def _second_differences() -> Tensor:
 def conjugate_gradients(matrix: Tensor, right: Tensor, *, steps: int) -> Tensor:
     """Return x of A x = r, shape (..., L), for symmetric positive definite A (..., L, L) and r (..., L).
 
-    Conjugate gradients are made of products alone, which every ONNX runtime has. The residuals are preconditioned with
-    the diagonal. The number of steps is fixed, because a graph has no loop that ends by itself; a system that is solved
-    before changes no more.
+    Conjugate gradients, preconditioned with the diagonal, are made of products alone, which every ONNX runtime has. The
+    steps are fixed, because a graph has no loop that ends by itself; a system that is solved before changes no more.
     """
     inverse_diagonal = 1 / torch.diagonal(matrix, dim1=-2, dim2=-1)
     x, residual = torch.zeros_like(right), right

@@ -15,13 +15,10 @@ ORDINARY = 0
 
 
 class EvidenceLoss:
-    """How probable evidence makes the truth among responses that the training photographs have.
+    """How probable evidence makes the truth among responses of training photographs, which are the prior of training.
 
-    The responses of all training photographs are the prior of training: the evidence is the factor between this prior
-    and the posterior, so the prior can be replaced afterwards.
-
-    weights, (M, 11): EMoR weights of the responses that the truth competes with
-    families, int (M,): 0 of an ordinary response, else 1 + its position in `UNUSUAL`
+    They have EMoR weights (M, 11) and families, int (M,): 0 of an ordinary response, else 1 + its position in
+    `UNUSUAL`. Evidence is the factor between this prior and the posterior, so the prior can be replaced afterwards.
     """
 
     def __init__(self, weights: Tensor, families: Tensor) -> None:

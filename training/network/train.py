@@ -54,8 +54,7 @@ class TrainingConfig:
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
-    The folder `run` gets run.json, last.pt, and log.csv with the epoch, the training loss, and of the validation
-    photographs the loss and the distance between the posterior's mean and the truth, in units of E_est. The run starts
+    The folder `run` gets run.json, last.pt, and log.csv: epoch, training loss, and `validation_errors`. The run starts
     from the weights of `init`, a checkpoint or a model folder, as far as it has them. Raise SystemExit if `run` holds a
     run of another recipe or on other shards.
     """

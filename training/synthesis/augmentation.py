@@ -36,9 +36,8 @@ def relight(
 ) -> Float32Array:
     """Return windows (N, S, S, 3), float32, some under a smooth illumination gradient, some with other contrast.
 
-    A power law on the irradiance changes how light mixes at edges, which the network measures, so the power stays near
-    1. A change of the contrast at large scale leaves edges as they are, so it may be large: a fraction `contrasted` of
-    the windows has one, and the logarithm of the factor on the contrast is `contrast` on average.
+    A power law changes how light mixes at edges, which the network measures, so it stays near 1. Contrast at large
+    scale leaves edges as they are: a fraction `contrasted` has a factor on it, whose mean logarithm is `contrast`.
     """
     if rng.random() < GRADIENT:
         light = light * illumination_gradient(len(light), rng, side=light.shape[1])
@@ -79,9 +78,8 @@ def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
 def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[float, float]) -> Float32Array:
     """Return windows (N, S, S, 3) with weaker texture, as of walls and skies, and the same edges.
 
-    The neighborhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
-    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighborhood is
-    below a random one (the local filter of Lee, 1980); at edges it is 1, so they mix light as before.
+    A gain takes out the variation of the log luminance where its standard deviation in a neighborhood is below a random
+    one (the local filter of Lee, 1980). `reach` is the neighborhood's, in 227ths of the side.
     """
     size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1
     variance = np.float32(np.exp(rng.uniform(*np.log(TEXTURE))) ** 2)

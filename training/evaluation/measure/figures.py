@@ -32,11 +32,10 @@ CODES = np.arange(256) / 255
 
 
 def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
-    """Return the errors of one response on one photograph.
+    """Return the errors of one response on one photograph, in which codes occur as often as `counts`, (256,), says.
 
-    `true`, `estimated`: the responses. `counts`, int (256,): how often each code occurs in the photograph. The result:
-    the errors of `ERRORS`; "scale", by how many stops the light is too bright; and "lower" and "partial", the E_est
-    over the samples up to `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
+    "scale" is by how many stops the light is too bright; "lower" and "partial" are the E_est over the samples up to
+    `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
     """
     linearization = round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS)
     return {

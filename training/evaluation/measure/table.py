@@ -36,10 +36,7 @@ MEASURING_CODE = (
 class Table:
     """Rows on disk: each is written as soon as it is measured, and read again by the next run.
 
-    The first line of the file holds the settings that all rows depend on.
-
-    path: the file; made where absent
-    settings: what every row depends on
+    The file is made where absent. Its first line holds the settings that all rows depend on.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any]) -> None:
