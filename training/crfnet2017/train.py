@@ -5,8 +5,6 @@ Two stages (CRF-net paper, Sec. 3.3): to tell the 201 responses of DoRF apart an
 """
 
 import argparse
-import csv
-import io
 import math
 import time
 from dataclasses import asdict, dataclass, replace
@@ -17,7 +15,7 @@ import torch
 from torch import Tensor, nn
 from tqdm import tqdm
 
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
@@ -31,11 +29,6 @@ VALIDATION_WINDOWS, VALIDATION_SEED, VALIDATION_BATCH = 2000, 2017, 25
 
 #: Steps between validations, and seconds between checkpoints where no validation comes before.
 VALIDATE_EVERY, CHECKPOINT_SECONDS = 500, 300.0
-
-STAGES = ("classify", "regress")
-
-#: Columns of log.csv.
-LOG_COLUMNS = ("step", "train_loss", "validation")
 
 
 @dataclass(frozen=True)
@@ -146,11 +139,9 @@ class Trainer:
         rows.append([self.state.done, loss, figure])
         if is_better:
             self.state.save(folder / "best.pt")
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(LOG_COLUMNS)
-        writer.writerows([int(step), *(f"{value:.4f}" for value in values)] for step, *values in rows)
-        atomic_write_text(folder / "log.csv", text.getvalue(), overwrite=True)
+        header, formats = "step,train_loss,validation", ("%d", "%.4f", "%.4f")
+        with atomic_write(folder / "log.csv", overwrite=True) as temporary:
+            np.savetxt(temporary, rows, formats, delimiter=",", header=header, comments="")
 
 
 def train(
@@ -206,7 +197,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
     parser.add_argument("--run", type=Path, required=True, help="folder of the checkpoints and the log")
-    parser.add_argument("--stage", choices=STAGES, required=True)
+    parser.add_argument("--stage", choices=RECIPES["default"], required=True)
     parser.add_argument("--recipe", choices=RECIPES, default="default")
     parser.add_argument("--init", default="none", help="a run or a checkpoint to start from; or none")
     parser.add_argument("--steps", type=int, help="other than the recipe's")

@@ -108,7 +108,8 @@ def draw_windows(scenes: TrainingScenes, count: int, *, seed: int, augment: bool
     pending, (low, high) = torch.arange(count, device=device), EXPOSURES
     for turn in range(TRIED * count):
         if turn % TRIED == 0:
-            drawn.classes[pending] = _integers(len(scenes.curves), len(pending), generator)
+            classes = torch.randint(len(scenes.curves), (len(pending),), device=device, generator=generator)
+            drawn.classes[pending] = classes
         drawn.exposures[pending] = low + (high - low) * torch.rand(len(pending), device=device, generator=generator)
         places = _places(scenes, len(pending), generator)
         parts = zip(pending.split(PART), places.split(PART), strict=True)
@@ -175,7 +176,7 @@ def filled(codes: Tensor) -> Tensor:
 
 def _places(scenes: TrainingScenes, count: int, generator: torch.Generator) -> Tensor:
     """Return random scenes and places in them: number, and fractions of height and width, float32 (count, 3)."""
-    numbers = _integers(len(scenes.pixels), count, generator)
+    numbers = torch.randint(len(scenes.pixels), (count,), device=generator.device, generator=generator)
     fractions = torch.rand(count, 2, device=generator.device, generator=generator)
     return torch.cat([numbers[:, None], fractions], dim=1)
 
@@ -188,8 +189,3 @@ def _crops(scenes: TrainingScenes, places: Tensor) -> Tensor:
         y, x = (int(part * (side - WINDOW_SIZE + 1)) for part, side in zip(place, scene.shape[1:], strict=True))
         crops.append(scene[:, y : y + WINDOW_SIZE, x : x + WINDOW_SIZE])
     return torch.stack(crops)
-
-
-def _integers(end: int, count: int, generator: torch.Generator) -> Tensor:
-    """Return random numbers from 0 to end - 1, int64 (count,)."""
-    return torch.randint(end, (count,), device=generator.device, generator=generator)

@@ -1,6 +1,8 @@
 """Scene-linear photographs to train and measure on, split by scene."""
 
 import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -71,6 +73,15 @@ def table_rows(path: Path) -> list[dict[str, str]]:
     """Return the rows of a table that comes with the data."""
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def table_text(columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str:
+    """Return the CSV text of rows, the first line of which names the columns."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:
