@@ -18,7 +18,7 @@ from tqdm import tqdm
 from crfnet_core.files import atomic_write
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
+from training.crfnet2017.recipes import RECIPES, Recipe, make_optimizer
 from training.crfnet2017.windows import TrainingScenes, Windows, draw_windows, read_splits
 from training.data.manifest import training_digest
 from training.provenance import record_run
@@ -110,21 +110,12 @@ class Trainer:
     def step(self, batch: Windows) -> Tensor:
         """Move the weights once and return the loss."""
         recipe = self.config.recipe
-        for group in self.state.optimizer.param_groups:
-            group["lr"] = learning_rate(recipe, self.state.done) * group["factor"]
         self.state.network.train()
         (inputs,) = batch.inputs(recipe.batch)
         loss = self.task.loss(self._outputs(self.state.network, inputs), batch.classes)
         self.state.move(loss, clip=recipe.clip)
         self.state.done += 1
         return loss.detach()
-
-    def validation_figure(self) -> float:
-        """Return the mean figure of the held-out windows by the average: top-1 accuracy, or E_est."""
-        network = self.state.averaged.module.eval()
-        with torch.inference_mode():
-            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
-        return float(self.task.figures(outputs, self.validation.classes).mean())
 
     def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:
         """Return the network's outputs."""
@@ -133,8 +124,11 @@ class Trainer:
         return outputs.float()
 
     def _validate(self, folder: Path, loss: float) -> None:
-        """Log a validation, and save the best average."""
-        figure, rows = self.validation_figure(), self.state.rows
+        """Log the mean figure of the held-out windows by the average, and save the best average."""
+        network, rows = self.state.averaged.module.eval(), self.state.rows
+        with torch.inference_mode():
+            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
+        figure = float(self.task.figures(outputs, self.validation.classes).mean())
         is_better = self.task.is_better(figure, [row[2] for row in rows])
         rows.append([self.state.done, loss, figure])
         if is_better:
@@ -181,7 +175,7 @@ def _start(config: RunConfig, task: StageTask, last: Path) -> TrainingState:
         start_from(network, Path(config.init))
     network = network.to(task.weights.device, memory_format=torch.channels_last)
     averaged = moving_average(network, config.recipe.averaged_steps)
-    state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
+    state = TrainingState(network, averaged, *make_optimizer(network, config.recipe))
     if last.exists():
         state.resume(last, task.weights.device)
     return state

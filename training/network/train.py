@@ -90,7 +90,7 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             families = shards.families[rows]
             _, evidence = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
             losses.append(loss.of_each(evidence, weights, families))
-            errors.append(loss.errors(evidence, weights)[families == ORDINARY])
+            errors.append(loss.errors(loss.scores(evidence), weights)[families == ORDINARY])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
 
 

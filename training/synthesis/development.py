@@ -105,10 +105,8 @@ def develop(
     if development.export is None:
         return point_sampled(codes, (windows or len(codes)) // len(codes), development.scatter, rng)
     export = development.export
-    codes = resized(codes, WINDOW_SIZE, export.resample)
-    if export.finish != Finish():
-        codes = rounded(export.finish.applied(split(codes)))
-    return export.jpeg.compressed(codes)
+    small = split(resized(codes, WINDOW_SIZE, export.resample))
+    return export.jpeg.compressed(rounded(export.finish.applied(small)))
 
 
 def looked_up(plane: Float32Array, curve: Float64Array) -> Float32Array:

@@ -165,7 +165,7 @@ def _scene_windows(scene: Scene, count: int, side: int, rng: np.random.Generator
     tried = count * TRIED
     if rng.random() < RESAMPLED or min(scene.pixels.shape[:2]) < side:
         drawn = [AffineResampling.draw(scene, rng, side=side) for _ in range(tried)]
-        chosen = [drawn[i].window() for i in _best_covering([one.thumbnail() for one in drawn], count)]
+        chosen = [drawn[i].window() for i in _best_covering([one.window(THUMBNAIL_STEP) for one in drawn], count)]
     else:
         crops = [_crop(scene, side, rng) for _ in range(tried)]
         thumbnails = [crop[::THUMBNAIL_STEP, ::THUMBNAIL_STEP] for crop in crops]

@@ -51,16 +51,8 @@ class AffineResampling:
         """The distance between samples, in pixels of the scene."""
         return float(np.sqrt(abs(np.linalg.det(self.matrix))))
 
-    def window(self) -> Float32Array:
-        """Return the linear window, float32 (side, side, 3)."""
-        return self._sampled(1)
-
-    def thumbnail(self) -> Float32Array:
-        """Return every fourth sample along both sides, not prefiltered, float32 (C, C, 3)."""
-        return self._sampled(THUMBNAIL_STEP)
-
-    def _sampled(self, step: int) -> Float32Array:
-        """Return every step-th sample, bilinear between the pixels of the scene."""
+    def window(self, step: int = 1) -> Float32Array:
+        """Return every step-th sample, bilinear, float32 (C, C, 3); the whole window is prefiltered."""
         reach = np.abs(self.matrix) @ np.full(2, self.side / 2) + 3 * max(1.0, self.scale)
         first, last = np.floor(self.center - reach).astype(int), np.ceil(self.center + reach).astype(int)
         size = self.scene.pixels.shape[:2]
