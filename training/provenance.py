@@ -16,11 +16,8 @@ from typing import Any
 
 from crfnet_core.files import atomic_write_text, file_sha256
 
-#: The record of a run in its folder, and in the folder of a model that came from it.
-RUN_FILE = "run.json"
-
-#: The root of the repository.
-ROOT = Path(__file__).parents[1]
+RUN_FILE = "run.json"  # the record of a run in its folder, and in the folder of a model that came from it
+ROOT = Path(__file__).parents[1]  # the root of the repository
 
 Record = dict[str, Any]
 

@@ -19,8 +19,9 @@ from training.data.curves import read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
-#: The largest float16.
-FLOAT16_MAX = 65504.0
+FLOAT16_MAX = 65504.0  # the largest float16
+PART = 256  # windows that are rendered at a time: a batch of an accelerator
+BLENDED = 0.25  # part of the windows that are a blend of two scenes
 
 #: Range of the exposure in training, uniform, in units of s_crf (Sec. 3.3: s_crf - 0.4 to s_crf + 0.4, with light
 #: scaled so that s_crf is near 1). Table 2 tests five factors of this range.
@@ -28,12 +29,6 @@ EXPOSURES = (0.6, 1.4)
 
 #: Photographs tried for a window before its response is drawn anew: under some, hardly a window covers the range.
 TRIED = 240
-
-#: Windows that are rendered at a time: a batch of an accelerator.
-PART = 256
-
-#: Part of the windows that are a blend of two scenes.
-BLENDED = 0.25
 
 #: Standard deviations: of the gains of white balance and of the exponent of contrast, in stops; and of a color matrix.
 GAINS, CONTRAST, MATRIX = 0.4, 0.3, 0.12

@@ -16,17 +16,10 @@ from training.network.start import start_from, start_record
 from training.provenance import data_record, record_run
 from training.state import TrainingState, moving_average
 
-#: The file of the last checkpoint in the folder of a run.
-CHECKPOINT = "last.pt"
-
-#: Largest norm of the gradient of a step.
-CLIP = 1.0
-
-#: The learning rate begins at the highest one divided by this.
-FIRST_DIVISOR = 25.0
-
-#: Responses of training photographs that the truth competes with in the loss.
-COMPETITORS = 2048
+CHECKPOINT = "last.pt"  # the file of the last checkpoint in the folder of a run
+CLIP = 1.0  # largest norm of the gradient of a step
+FIRST_DIVISOR = 25.0  # the learning rate begins at the highest one divided by this
+COMPETITORS = 2048  # responses of training photographs that the truth competes with in the loss
 
 
 @dataclass(frozen=True)

@@ -15,15 +15,12 @@ from training.data.scenes import Scene
 #: whose lens does not resolve its pixels.
 SCALES = (0.55, 3.0)
 
-#: Standard deviation of the logarithm of the stretch along one axis.
-STRETCH = 0.12
+STRETCH = 0.12  # standard deviation of the logarithm of the stretch along one axis
+THUMBNAIL_STEP = 4  # step between the samples that a thumbnail keeps along both sides
 
 #: Standard deviation of the Gaussian before sampling, in units of the distance between samples. It averages linear
 #: light, as a sensor does.
 PREFILTER = 0.45
-
-#: Step between the samples that a thumbnail keeps along both sides.
-THUMBNAIL_STEP = 4
 
 
 @dataclass(frozen=True)

@@ -18,17 +18,12 @@ ERRORS = ("E_est", "E_lin", "shape")
 #: (CRF-net paper, Fig. 9: the upper 20 % of the pixel range are ignored, and the estimate is scaled).
 PARTIAL_BRIGHTNESS, SCALES = 0.8, (0.3, 3.0)
 
-#: Decimals of the figures.
-DECIMALS = 6
-
-#: EMoR weights that are kept: those that matter (docs/METHOD.md).
-WEIGHTS = 3
+DECIMALS = 6  # decimals of the figures
+WEIGHTS = 3  # EMoR weights that are kept: those that matter (docs/METHOD.md)
+CODES = np.arange(256) / 255  # the values of 8-bit codes, in [0, 1]
 
 #: Samples that EMoR weights are fitted to, and their decimals: so that correlations compare with earlier reports.
 FITTED_SAMPLES, FITTED_DECIMALS = 65, 4
-
-#: The values of 8-bit codes, in [0, 1].
-CODES = np.arange(256) / 255
 
 
 def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
