@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import first_line, oiio_message
-from crfnet_core.photograph.image_io.header_checks import attributes_of
+from crfnet_core.photograph.image_io.header_checks import attributes_of, channel_names
 
 from ..errors import PlateError
 
@@ -74,7 +74,7 @@ def linear_header(
 
 def written_form(header: Any) -> str:
     """Return the size, the channels and the coding of a file; a comp that is written over it may keep attributes."""
-    channels = " ".join(header.channelnames)
+    channels = " ".join(channel_names(header))
     return f"{header.width} x {header.height} {channels} {header.format} {header['compression']}"
 
 

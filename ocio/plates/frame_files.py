@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
-from crfnet_core.photograph.image_io.header_checks import text_attribute
+from crfnet_core.photograph.image_io.header_checks import channel_names, text_attribute
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
 from crfnet_core.photograph.recognition import refuse_linear
@@ -129,7 +129,7 @@ def _seek_color(source: Any) -> None:
     """Go to the first part of an OpenEXR file that has R, G and B, if there is one: depth or a mask may come first."""
     part = 0
     while source.seek_subimage(part, 0):
-        if set(source.spec().channelnames) >= set("RGB"):
+        if set(channel_names(source.spec())) >= set("RGB"):
             return
         part += 1
     source.seek_subimage(0, 0)
@@ -140,8 +140,8 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     """Return the encoded values in an OpenEXR file, divided by its alpha or as stored."""
     with _opened_exr(path, is_encoded=is_encoded) as source:
         header = source.spec()
-        gray = next((name for name in GRAY if name in header.channelnames), "")
-        channels = [header.channelindex(name if name in header.channelnames else gray) for name in "RGB"]
+        gray = next((name for name in GRAY if name in channel_names(header)), "")
+        channels = [header.channelindex(name if name in channel_names(header) else gray) for name in "RGB"]
         part, needed = source.current_subimage(), {*channels, header.alpha_channel} - {-1}  # others may be many
         planes = {channel: source.read_image(part, 0, channel, channel + 1, "float") for channel in needed}
         problem = oiio_message(source)
@@ -168,13 +168,13 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() * max(header.nchannels, 4) > 4 * MAX_PIXELS:  # all are decompressed
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
-    names = set(header.channelnames)
-    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBYA"}
+    names = set(channel_names(header))
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(channel_names(header)) if name in "RGBYA"}
     if (
         header.deep
         or not kinds <= {"half", "float"}
         or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY])
     ):
-        raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
+        raise PlateError("exr_channels", path=path, channels=", ".join(channel_names(header)))
     if not ENCODED.fullmatch(space) and not is_encoded:
         raise PlateError("exr_untagged", path=path)
