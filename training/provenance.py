@@ -16,11 +16,8 @@ from typing import Any
 
 from crfnet_core.files import atomic_write_text, file_sha256
 
-#: The record of a run in its folder, and in the folder of a model that came from it.
-RUN_FILE = "run.json"
-
-#: The root of the repository.
-ROOT = Path(__file__).parents[1]
+RUN_FILE = "run.json"  # the record of a run in its folder, and in the folder of a model that came from it
+ROOT = Path(__file__).parents[1]  # the root of the repository
 
 Record = dict[str, Any]
 
@@ -28,9 +25,8 @@ Record = dict[str, Any]
 def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: str) -> Record:
     """Write run.json for a run that begins; for one that goes on, check it and add the resumption; return the record.
 
-    `recipe` is the whole configuration, in values that JSON knows; `seed` decides the initial weights and the order of
-    the data; `data` comes from `data_record`, and `start` names the weights that the run starts from. Raise SystemExit
-    if the folder holds a run of another recipe, seed or start, or on other data.
+    `recipe` is the whole configuration, in values that JSON knows; `data` comes from `data_record`, and `start` names
+    the weights that the run starts from. Raise SystemExit if the folder holds a run that differs in one of these.
     """
     wanted = json.loads(json.dumps({"seed": seed, "start": start, "recipe": recipe, "data": data}))
     path = folder / RUN_FILE

@@ -27,8 +27,7 @@ class TrainingState:
     network: nn.Module
     averaged: AveragedModel  # the moving average of the network's weights
     optimizer: torch.optim.Optimizer
-    #: Of the learning rate, if it is not computed from `done`.
-    schedule: torch.optim.lr_scheduler.LRScheduler | None = None
+    schedule: torch.optim.lr_scheduler.LRScheduler  # of the learning rate
     done: int = 0  # steps or epochs that are done
     rows: list[list[float]] = field(default_factory=list)  # the log
 
@@ -39,8 +38,7 @@ class TrainingState:
         if clip:
             nn.utils.clip_grad_norm_(self.network.parameters(), clip)
         self.optimizer.step()
-        if self.schedule:
-            self.schedule.step()
+        self.schedule.step()
         self.averaged.update_parameters(self.network)
 
     def save(self, path: Path) -> None:
@@ -60,5 +58,5 @@ class TrainingState:
     @property
     def _parts(self) -> dict[str, Any]:
         """The parts of a checkpoint that have states of their own."""
-        parts = {"network": self.averaged.module, "moving": self.network, "optimizer": self.optimizer}
-        return parts | ({"schedule": self.schedule} if self.schedule else {})
+        weights = {"network": self.averaged.module, "moving": self.network}
+        return weights | {"optimizer": self.optimizer, "schedule": self.schedule}

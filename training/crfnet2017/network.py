@@ -10,11 +10,9 @@ MAP_CHANNELS, MAP_SIDE = 512, 23
 
 
 class Bottleneck(nn.Module):
-    """A residual block of ResNet-50: convolutions of 1x1, 3x3 and 1x1, beside a shortcut.
+    """A residual block of ResNet-50: convolutions of 1x1, 3x3 (of `inner` channels) and 1x1, beside a shortcut.
 
     The first convolution and the projection of the shortcut have the stride, as in the ResNet-50 of 2015.
-
-    channels, inner, outputs: channels of the input, of the 3x3 convolution and of the output
     """
 
     def __init__(self, channels: int, inner: int, outputs: int, *, stride: int = 1) -> None:
@@ -35,11 +33,9 @@ class Bottleneck(nn.Module):
 
 
 class CRFNet(nn.Module):
-    """Windows to EMoR weights, or to scores of the 201 responses of DoRF.
+    """Windows to 11 EMoR weights, or to scores of the 201 responses of DoRF.
 
     Source: CRF-net paper, Table 1. With 11 outputs it has 3 864 203 parameters.
-
-    outputs: 11 EMoR weights, or 201 responses to tell apart
     """
 
     def __init__(self, outputs: int = COMPONENTS) -> None:

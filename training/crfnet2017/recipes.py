@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, replace
 
 import torch
+from torch.optim import Optimizer
+from torch.optim.lr_scheduler import LambdaLR
 
 from training.crfnet2017.network import CRFNet
 
@@ -69,12 +71,15 @@ def learning_rate(recipe: Recipe, step: int) -> float:
     return recipe.learning_rate * 0.5 * (1 + math.cos(math.pi * (done - 0.1) / 0.9))
 
 
-def make_optimizer(network: CRFNet, recipe: Recipe) -> torch.optim.Optimizer:
-    """Return the optimizer of a recipe, with a group each for body and head; "factor" is on the learning rate."""
+def make_optimizer(network: CRFNet, recipe: Recipe) -> tuple[Optimizer, LambdaLR]:
+    """Return the optimizer of a recipe, with a group each for body and head, and the schedule of its learning rate."""
     groups = [
-        {"params": list(network.body.parameters()), "factor": 1.0},
-        {"params": list(network.head.parameters()), "factor": recipe.head_factor},
+        {"params": list(network.body.parameters())},
+        {"params": list(network.head.parameters()), "lr": recipe.learning_rate * recipe.head_factor},
     ]
+    rate, decay = recipe.learning_rate, recipe.weight_decay
     if recipe.optimizer == "sgd":
-        return torch.optim.SGD(groups, recipe.learning_rate, recipe.momentum, weight_decay=recipe.weight_decay)
-    return torch.optim.AdamW(groups, recipe.learning_rate, weight_decay=recipe.weight_decay, fused=True)
+        optimizer: Optimizer = torch.optim.SGD(groups, rate, recipe.momentum, weight_decay=decay)
+    else:
+        optimizer = torch.optim.AdamW(groups, rate, weight_decay=decay, fused=True)
+    return optimizer, LambdaLR(optimizer, lambda step: learning_rate(recipe, step) / rate)

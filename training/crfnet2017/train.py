@@ -5,8 +5,6 @@ Two stages (CRF-net paper, Sec. 3.3): to tell the 201 responses of DoRF apart an
 """
 
 import argparse
-import csv
-import io
 import math
 import time
 from dataclasses import asdict, dataclass, replace
@@ -17,10 +15,10 @@ import torch
 from torch import Tensor, nn
 from tqdm import tqdm
 
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
+from training.crfnet2017.recipes import RECIPES, Recipe, make_optimizer
 from training.crfnet2017.windows import TrainingScenes, Windows, draw_windows, read_splits
 from training.data.manifest import training_digest
 from training.provenance import record_run
@@ -31,11 +29,6 @@ VALIDATION_WINDOWS, VALIDATION_SEED, VALIDATION_BATCH = 2000, 2017, 25
 
 #: Steps between validations, and seconds between checkpoints where no validation comes before.
 VALIDATE_EVERY, CHECKPOINT_SECONDS = 500, 300.0
-
-STAGES = ("classify", "regress")
-
-#: Columns of log.csv.
-LOG_COLUMNS = ("step", "train_loss", "validation")
 
 
 @dataclass(frozen=True)
@@ -117,21 +110,12 @@ class Trainer:
     def step(self, batch: Windows) -> Tensor:
         """Move the weights once and return the loss."""
         recipe = self.config.recipe
-        for group in self.state.optimizer.param_groups:
-            group["lr"] = learning_rate(recipe, self.state.done) * group["factor"]
         self.state.network.train()
         (inputs,) = batch.inputs(recipe.batch)
         loss = self.task.loss(self._outputs(self.state.network, inputs), batch.classes)
         self.state.move(loss, clip=recipe.clip)
         self.state.done += 1
         return loss.detach()
-
-    def validation_figure(self) -> float:
-        """Return the mean figure of the held-out windows by the average: top-1 accuracy, or E_est."""
-        network = self.state.averaged.module.eval()
-        with torch.inference_mode():
-            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
-        return float(self.task.figures(outputs, self.validation.classes).mean())
 
     def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:
         """Return the network's outputs."""
@@ -140,17 +124,18 @@ class Trainer:
         return outputs.float()
 
     def _validate(self, folder: Path, loss: float) -> None:
-        """Log a validation, and save the best average."""
-        figure, rows = self.validation_figure(), self.state.rows
+        """Log the mean figure of the held-out windows by the average, and save the best average."""
+        network, rows = self.state.averaged.module.eval(), self.state.rows
+        with torch.inference_mode():
+            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
+        figure = float(self.task.figures(outputs, self.validation.classes).mean())
         is_better = self.task.is_better(figure, [row[2] for row in rows])
         rows.append([self.state.done, loss, figure])
         if is_better:
             self.state.save(folder / "best.pt")
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(LOG_COLUMNS)
-        writer.writerows([int(step), *(f"{value:.4f}" for value in values)] for step, *values in rows)
-        atomic_write_text(folder / "log.csv", text.getvalue(), overwrite=True)
+        header, formats = "step,train_loss,validation", ("%d", "%.4f", "%.4f")
+        with atomic_write(folder / "log.csv", overwrite=True) as temporary:
+            np.savetxt(temporary, rows, formats, delimiter=",", header=header, comments="")
 
 
 def train(
@@ -158,9 +143,8 @@ def train(
 ) -> TrainingState:
     """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
 
-    It trains on the device of the scenes. The folder `run` gets run.json, log.csv and the checkpoints last.pt and
-    best.pt. `digest` identifies the data. Raise SystemExit if `run` holds a run with another configuration or other
-    data.
+    The device is the scenes'. The folder `run` gets run.json, log.csv, last.pt and best.pt. `digest` identifies the
+    data. Raise SystemExit if `run` holds a run with another configuration or other data.
     """
     start = "random weights" if config.init == "none" else config.init
     record_run(run, recipe=asdict(config), seed=config.seed, data={"sha256": digest}, start=start)
@@ -191,7 +175,7 @@ def _start(config: RunConfig, task: StageTask, last: Path) -> TrainingState:
         start_from(network, Path(config.init))
     network = network.to(task.weights.device, memory_format=torch.channels_last)
     averaged = moving_average(network, config.recipe.averaged_steps)
-    state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
+    state = TrainingState(network, averaged, *make_optimizer(network, config.recipe))
     if last.exists():
         state.resume(last, task.weights.device)
     return state
@@ -207,7 +191,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
     parser.add_argument("--run", type=Path, required=True, help="folder of the checkpoints and the log")
-    parser.add_argument("--stage", choices=STAGES, required=True)
+    parser.add_argument("--stage", choices=RECIPES["default"], required=True)
     parser.add_argument("--recipe", choices=RECIPES, default="default")
     parser.add_argument("--init", default="none", help="a run or a checkpoint to start from; or none")
     parser.add_argument("--steps", type=int, help="other than the recipe's")

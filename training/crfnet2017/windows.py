@@ -19,8 +19,9 @@ from training.data.curves import read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
-#: The largest float16.
-FLOAT16_MAX = 65504.0
+FLOAT16_MAX = 65504.0  # the largest float16
+PART = 256  # windows that are rendered at a time: a batch of an accelerator
+BLENDED = 0.25  # part of the windows that are a blend of two scenes
 
 #: Range of the exposure in training, uniform, in units of s_crf (Sec. 3.3: s_crf - 0.4 to s_crf + 0.4, with light
 #: scaled so that s_crf is near 1). Table 2 tests five factors of this range.
@@ -28,12 +29,6 @@ EXPOSURES = (0.6, 1.4)
 
 #: Photographs tried for a window before its response is drawn anew: under some, hardly a window covers the range.
 TRIED = 240
-
-#: Windows that are rendered at a time: a batch of an accelerator.
-PART = 256
-
-#: Part of the windows that are a blend of two scenes.
-BLENDED = 0.25
 
 #: Standard deviations: of the gains of white balance and of the exponent of contrast, in stops; and of a color matrix.
 GAINS, CONTRAST, MATRIX = 0.4, 0.3, 0.12
@@ -108,7 +103,8 @@ def draw_windows(scenes: TrainingScenes, count: int, *, seed: int, augment: bool
     pending, (low, high) = torch.arange(count, device=device), EXPOSURES
     for turn in range(TRIED * count):
         if turn % TRIED == 0:
-            drawn.classes[pending] = _integers(len(scenes.curves), len(pending), generator)
+            classes = torch.randint(len(scenes.curves), (len(pending),), device=device, generator=generator)
+            drawn.classes[pending] = classes
         drawn.exposures[pending] = low + (high - low) * torch.rand(len(pending), device=device, generator=generator)
         places = _places(scenes, len(pending), generator)
         parts = zip(pending.split(PART), places.split(PART), strict=True)
@@ -175,7 +171,7 @@ def filled(codes: Tensor) -> Tensor:
 
 def _places(scenes: TrainingScenes, count: int, generator: torch.Generator) -> Tensor:
     """Return random scenes and places in them: number, and fractions of height and width, float32 (count, 3)."""
-    numbers = _integers(len(scenes.pixels), count, generator)
+    numbers = torch.randint(len(scenes.pixels), (count,), device=generator.device, generator=generator)
     fractions = torch.rand(count, 2, device=generator.device, generator=generator)
     return torch.cat([numbers[:, None], fractions], dim=1)
 
@@ -188,8 +184,3 @@ def _crops(scenes: TrainingScenes, places: Tensor) -> Tensor:
         y, x = (int(part * (side - WINDOW_SIZE + 1)) for part, side in zip(place, scene.shape[1:], strict=True))
         crops.append(scene[:, y : y + WINDOW_SIZE, x : x + WINDOW_SIZE])
     return torch.stack(crops)
-
-
-def _integers(end: int, count: int, generator: torch.Generator) -> Tensor:
-    """Return random numbers from 0 to end - 1, int64 (count,)."""
-    return torch.randint(end, (count,), device=generator.device, generator=generator)

@@ -53,9 +53,8 @@ def geometric_median(
 ) -> Float64Array:
     """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
 
-    Rows far from all others pull a mean along, and hardly this. Source: 500 steps of Weiszfeld (1937) from the mean.
-    Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not become the
-    median only because it is near.
+    Rows far from all others pull it less than a mean. Source: 500 steps of Weiszfeld (1937) from the mean. Distances
+    are L2 over `compared`; `least_distance` keeps a row from becoming the median only because it is near.
     """
     median: Float64Array = rows.mean(axis=0)
     for _ in range(500):

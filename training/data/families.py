@@ -28,9 +28,8 @@ LINEAR_POWERS, LOG_FACTORS = (0.82, 1.25), (30.0, 6000.0)
 def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
     """Return a response with more headroom: white lies so many stops higher above all that is darker.
 
-    Up to brightness `SHOULDER` the irradiance is divided by one factor, which is an exposure and leaves the shape error
-    as it is; above, its logarithm is stretched so that it still ends at 1. `stops` may be negative, but must lie above
-    log2 of the irradiance at the shoulder.
+    Up to `SHOULDER` the irradiance is divided by one factor, which leaves the shape error as it is; above, its
+    logarithm is stretched to end at 1. `stops` may be negative, but above log2 of the irradiance at the shoulder.
     """
     logarithm = np.log2(curve.inverse(UNIFORM[1:]))  # (1023,)
     at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
@@ -48,9 +47,8 @@ def developed(responses: Float64Array) -> Float64Array:
 def edited(responses: Float64Array, rng: np.random.Generator) -> Float64Array:
     """Return responses, shape (N, 1024), as an editor leaves them: other contrast, brightness, black and white points.
 
-    An edit is a monotone curve on brightness: a power, an S-shaped or inverse S-shaped contrast around a pivot, and
-    black and white points that cut, as in the dialogues "Levels" and "Curves" of every editor. Most files that an
-    editor saved were only scaled or turned, so most edits are small, and a few are large.
+    An edit is a power, an S-shaped contrast around a pivot, and black and white points that cut, as in "Levels" and
+    "Curves" of editors. Most files that an editor saved were only scaled or turned, so most edits are small.
     """
     return np.stack([_edited(response, rng) for response in responses])
 

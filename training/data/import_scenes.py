@@ -5,8 +5,6 @@ and Radiance HDR files are read as they are. Each file becomes a half-float Open
 """
 
 import argparse
-import csv
-import io
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,7 +17,7 @@ from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.photograph.image_io import first_line
 from training.data.linear_files import linear_scene
-from training.data.scenes import IMPORTED
+from training.data.scenes import IMPORTED, table_rows, table_text
 
 #: Kind -> its name in the manifest.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
@@ -43,7 +41,8 @@ def import_scene(path: Path, folder: Path, *, kind: str = "photograph", licence:
     row = dict(zip(COLUMNS, values, strict=True))
     folder.mkdir(parents=True, exist_ok=True)
     write_scene(target, pixels)
-    write_manifest(folder, [*rows, row])
+    text = table_text(COLUMNS, [*rows, row])
+    atomic_write_text(folder / "manifest.csv", text, overwrite=True, error=PhotoError)
     return row
 
 
@@ -63,24 +62,12 @@ def write_scene(path: Path, pixels: NDArray[np.float16]) -> None:
 def read_manifest(folder: Path) -> list[dict[str, str]]:
     """Return the rows of a folder's manifest.csv, [] if there is none; PhotoError if it has other columns."""
     path = folder / "manifest.csv"
-    if not path.exists():
-        return []
-    with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.DictReader(file)
-        rows = list(reader)
-    columns = tuple(reader.fieldnames or ())
-    if columns != COLUMNS or any(None in row for row in rows):
-        raise PhotoError(f"{path}: needs the columns {', '.join(COLUMNS)}, and no more; found {', '.join(columns)}")
+    rows = table_rows(path) if path.exists() else []
+    for row in rows:
+        if tuple(row) != COLUMNS:
+            found = ", ".join(map(str, row))
+            raise PhotoError(f"{path}: needs the columns {', '.join(COLUMNS)}, and no more; found {found}")
     return rows
-
-
-def write_manifest(folder: Path, rows: Sequence[dict[str, str]]) -> None:
-    """Write a folder's manifest.csv, whole or not at all, with the line ends of RFC 4180."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS)
-    writer.writeheader()
-    writer.writerows(rows)
-    atomic_write_text(folder / "manifest.csv", text.getvalue(), overwrite=True, error=PhotoError)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

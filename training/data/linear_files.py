@@ -12,7 +12,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.camera_raw import libraw_message
 from crfnet_core.photograph.image_io import first_line
 from crfnet_core.photograph.image_io.file_kinds import LINEAR_SIGNATURES, RAW_SUFFIXES
-from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.image_io.header_checks import channel_names, check_size, oiio_message, text_attribute
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.scenes import BAND, LUMINANCE, area_averaged
 
@@ -39,11 +39,8 @@ DEVELOPMENT: dict[str, Any] = {
 def linear_scene(path: Path, *, is_panorama: bool = False) -> tuple[NDArray[np.float16], list[str]]:
     """Return the scene as it will be written, float16 (H, W, 3) in [0, 65000], and notes on what was done to it.
 
-    In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. OpenEXR and Radiance HDR are
-    multiplied by the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`. Of a panorama, which
-    is equirectangular and twice as wide as high, the middle `BAND` of the rows is kept. Each n x n samples become one,
-    their mean, for the largest n that leaves the shorter side `LEAST_SIDE`. Raise PhotoError or OSError if the file is
-    absent, damaged, not scene-linear, too small or black, or has other sides than a panorama.
+    Each n x n samples become their mean, for the largest n that leaves the shorter side `LEAST_SIDE`. Raise PhotoError
+    or OSError if the file is absent, damaged, not scene-linear, too small or black, or no panorama where one is needed.
     """
     with path.open("rb") as file:
         head = file.read(16)
@@ -85,14 +82,14 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
 def read_hdr(path: Path) -> NDArray[np.float32]:
     """Return the samples of an OpenEXR or Radiance HDR file, float32 (H, W, 3), as stored."""
     source = oiio.ImageInput.open(str(path))
-    problem = oiio.geterror()
+    problem = oiio_message()
     if source is None:
         raise PhotoError(f"{path}: cannot be read ({first_line(problem)}); check the file")
     try:
         header = source.spec()
         _check_header(path, header)
         values = source.read_image(0, 0, 0, header.nchannels, "float")
-        problem = source.geterror()
+        problem = oiio_message(source)
     finally:
         source.close()
     if values is None or problem:
@@ -116,11 +113,11 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
 def _check_header(path: Path, header: Any) -> None:
     """Refuse an OpenEXR or HDR file that is not a flat scene-linear picture of floats."""
     check_size(path, header.width, header.height)
-    names, space = set(header.channelnames), header.get_string_attribute("colorInteropID")
+    names, space = channel_names(header), text_attribute(header, "colorInteropID")
     if header.deep or header.depth != 1 or str(header.format) not in ("half", "float"):
         raise PhotoError(f"{path}: is deep, a volume, or not of half or float samples; convert it")
-    if not (names >= set("RGB") or len(names - {"A"}) == 1):
-        raise PhotoError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
+    if not (set(names) >= set("RGB") or len(set(names) - {"A"}) == 1):
+        raise PhotoError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(names)}")
     if space and space != "unknown" and not space.startswith("lin_"):
         raise PhotoError(f"{path}: calls itself {space}, which is not scene-linear; give the linear file")
 

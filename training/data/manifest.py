@@ -6,9 +6,7 @@ data folder with the manifest instead: it lists the files that are absent, alter
 """
 
 import argparse
-import csv
 import hashlib
-import io
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
@@ -17,7 +15,7 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text, file_sha256
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
-from training.data.scenes import split_scenes, table_rows
+from training.data.scenes import split_scenes, table_rows, table_text
 
 #: The manifest of the data that the packaged models were trained and measured with. Beside it, manifest_crfnet2017.csv
 #: lists 66 more scenes of crfnet2017-2.0 alone, which are in no data folder; their hashes are of the originals.
@@ -68,12 +66,8 @@ def training_digest(data: Path) -> str:
 
 
 def manifest_text(rows: Iterable[ManifestRow]) -> str:
-    """Return the CSV text of rows, the first line of which names the columns."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(row) for row in rows)
-    return text.getvalue()
+    """Return the text of a manifest."""
+    return table_text(COLUMNS, map(asdict, rows))
 
 
 def read_manifest(path: Path = MANIFEST_FILE) -> list[ManifestRow]:

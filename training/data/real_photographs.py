@@ -25,18 +25,7 @@ TRUSTED_GRADES = ("A", "B")
 USED, CAUTION = "yes", "caution: "
 
 #: The kinds of the bodies of DATA/real, whose list has no such column.
-KINDS = {
-    "Sony XQ-CT72 (Xperia 1 IV)": "phone",
-    "samsung SM-A528B (Galaxy A52s)": "phone",
-    "Nikon D90": "camera",
-    "Nikon D90 (second body)": "camera",
-    "unknown Nikon DSC_ (SSARCandy, resized PNG)": "camera",
-    "Canon EOS 600D": "camera",
-    "Samsung EX2F (resized via Photoshop)": "compact",
-    "Panasonic DMC-LX7": "compact",
-    "Canon PowerShot S45": "compact",
-    "Canon PowerShot S3 IS": "compact",
-}
+KINDS = {row["camera"]: row["kind"] for row in table_rows(Path(__file__).with_name("real_kinds.csv"))}
 
 
 @dataclass(frozen=True)
@@ -127,13 +116,11 @@ def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
     )
 
 
-def _crop(folder: Path, row: dict[str, str]) -> bytes:
-    """Return the part of the original file that is kept at full resolution, or nothing."""
-    return (folder / row["crop"]).read_bytes() if row["crop"] and (folder / row["crop"]).is_file() else b""
-
-
 def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
     """Return the photograph of a row of DATA/real_bodies/cases.csv; one exposure stack has one response."""
+    metadata = None
+    if row["file"].endswith(".webp"):  # the others are the original files, byte for byte
+        metadata = metadata_of_case(row, (folder / row["crop"]).read_bytes() if row["crop"] else b"")
     return RealPhotograph(
         name=row["id"],
         body=row["body"],
@@ -144,7 +131,7 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         fold=f"fold {row['fold']}",
         photograph=folder / row["file"],
         measured=folder / row["gt"],
-        metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
+        metadata=metadata,
     )
 
 
@@ -156,9 +143,8 @@ def caution(row: Mapping[str, str]) -> str:
 def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
     """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
 
-    The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
-    quantization tables. The size in EXIF, the profile and the XMP history are lost, except where the photograph is the
-    original byte for byte (`is_original`): `read_photo` finds them.
+    `crop`, a JPEG cut without recompression, has the original's quantization tables. The size in EXIF, the profile and
+    the XMP history are lost.
     """
     jpeg = read_jpeg_header(crop)
     width, height = (int(side) for side in row["original_size"].split("x"))
@@ -173,11 +159,6 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
         chroma_table=jpeg.chroma_table,
         file_format="JPEG",
     )
-
-
-def is_original(row: Mapping[str, str]) -> bool:
-    """Return whether the photograph of a row is the original file: the larger ones are WebP."""
-    return not row["file"].endswith(".webp")
 
 
 def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:

@@ -43,7 +43,7 @@ def make_bank(data: Path, *, without: str | None = None, without_held_out: bool 
     if without_held_out:
         dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
     film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)
-    families = ResponseFamilies(lambda family, count, rng: in_camera.draw(family.value, count, rng), film)
+    families = ResponseFamilies(in_camera.draw, film)
     rows: list[Float64Array] = []
     for number, (family, count) in enumerate(COUNTS.items()):
         known = dorf if family is Family.FILM else dorf[:0]

@@ -1,6 +1,8 @@
 """Scene-linear photographs to train and measure on, split by scene."""
 
 import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -47,9 +49,8 @@ class Scene:
 def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[tuple[str, bool]]]:
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
 
-    A quarter of the perspective photographs is in the test split and none in the validation split; panoramas fill up
-    these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
-    only, so that they move no other.
+    A quarter of the perspective photographs is in the test split, none in the validation split; panoramas fill up both.
+    Scenes that `training.data.import_scenes` added, listed if `with_imported`, only train, so that they move no other.
     """
     listed: dict[bool, list[tuple[str, bool]]] = {False: [], True: []}
     for row in table_rows(folder / "manifest.csv"):
@@ -72,6 +73,15 @@ def table_rows(path: Path) -> list[dict[str, str]]:
     """Return the rows of a table that comes with the data."""
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def table_text(columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str:
+    """Return the CSV text of rows, the first line of which names the columns."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:

@@ -19,11 +19,8 @@ from training.data.scenes import SPLIT_SEED, split_scenes
 #: The splits that the packaged models were trained and measured with.
 SPLITS_FILE = Path(__file__).with_name("splits.json")
 
-#: No two curves of a group are farther apart than this, in units of E_est.
-GROUP_DIAMETER = 1.0
-
-#: Fraction of the curves that P2 holds out, rounded down to whole groups.
-HELD_OUT_FRACTION = 0.2
+GROUP_DIAMETER = 1.0  # no two curves of a group are farther apart than this, in units of E_est
+HELD_OUT_FRACTION = 0.2  # fraction of the curves that P2 holds out, rounded down to whole groups
 
 
 def curve_groups(dorf: Float64Array) -> IndexArray:

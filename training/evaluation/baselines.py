@@ -19,7 +19,6 @@ ORACLE_COMPONENTS = (1, 3, 11)
 GAMMA = "gamma 2.2"
 MEAN_CURVE = "mean curve"
 OTHER_BODIES = "mean of the other bodies"
-ORACLE_GAMMA = "oracle: best gamma"
 ORACLE_HEADROOM = "oracle: mean of the other bodies, best headroom"
 ORACLE_DORF = "oracle: nearest curve of DoRF"
 
@@ -46,7 +45,7 @@ def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
     """Return the power law nearest to a true response, and its projections on EMoR, by name; all strictly monotone."""
     basis = EmorBasis.load()
     weights = basis.project(true.brightness)
-    curves = {ORACLE_GAMMA: nearest_power(true)}
+    curves = {"oracle: best gamma": nearest_power(true)}
     for k in ORACLE_COMPONENTS:
         truncated = np.where(np.arange(len(weights)) < k, weights, 0)
         curves[f"oracle: EMoR, {k} component{'s' * (k > 1)}"] = ResponseCurve.from_samples(basis.reconstruct(truncated))

@@ -10,6 +10,7 @@ the page. The first model is the default, the second the paper's network.
 
 import argparse
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -158,7 +159,8 @@ def draw_curves(path: Path, report: Report, data: Path, table: Table) -> None:
     examples = _examples(report, table, test_set, models[0])
     for axes, photograph in zip(figure.subplots(1, 3, sharey=True), examples, strict=True):
         true = ResponseCurve.from_samples(test_set.curves[photograph.curve])
-        answers = {model.name: _answer(photograph, test_set, model) for model in models}
+        ask = partial(estimate_response, simulated_photo(test_set, photograph), prior=Prior.load(PRIOR))
+        answers = {model.name: ask(network=load_network(model)).curve for model in models}
         curves = {"truth": true} | answers | {GAMMA: ResponseCurve.gamma(2.2)}
         for (name, curve), color in zip(curves.items(), COLORS, strict=True):
             error = "" if name == "truth" else f", {np.linalg.norm(curve.brightness - true.brightness):.2f}"
@@ -176,12 +178,6 @@ def _examples(report: Report, table: Table, test_set: TestSet, model: Model) -> 
     rows = table.rows("P0", {model.name: model.key}, [photograph.label for photograph in photographs])
     order = np.argsort([row["E_est"] for row in rows[model.name]])
     return [photographs[order[round(part * (len(order) - 1))]] for part in EXAMPLES]
-
-
-def _answer(photograph: TestPhotograph, test_set: TestSet, model: Model) -> ResponseCurve:
-    """Return the answer of a model for a photograph."""
-    photo = simulated_photo(test_set, photograph)
-    return estimate_response(photo, network=load_network(model), prior=Prior.load(PRIOR)).curve
 
 
 def _figure() -> Figure:

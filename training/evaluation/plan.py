@@ -90,10 +90,8 @@ class TestPhotograph:
 def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int) -> list[tuple[int, int, float]]:
     """Return `count` triples (scene, response, exposure factor), at most one for each scene and response.
 
-    Both are shuffled and then taken in turn, shifted where the turns would repeat. So every scene and every response
-    occurs equally often in any beginning of the list, give or take one, and so does every exposure.
-
-    Raise CRFNetError if `count` is below 1.
+    Both are shuffled and then taken in turn, shifted where the turns would repeat. So every scene, response and
+    exposure occurs equally often in any beginning of the list, give or take one. Raise CRFNetError for no photograph.
     """
     if count < 1:
         raise CRFNetError(f"the number of photographs must be 1 or more, found {count}")

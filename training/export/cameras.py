@@ -32,14 +32,9 @@ SAME_SETTING = 2.0
 #: Standard deviation of the shape of the measured responses of DATA/real_bodies, in stops, as its README states it.
 SHAPE_STOPS = 0.05
 
-#: Decimals of the responses: their least step is 1e-7.
-DECIMALS = 8
-
-#: The folder of raw files with their JPEGs, all of one body.
-RAW_PAIRS = "raw_pairs"
-
-#: How the names of bodies begin whose make and model nobody knows.
-UNKNOWN_BODY = "unknown"
+DECIMALS = 8  # decimals of the responses: their least step is 1e-7
+RAW_PAIRS = "raw_pairs"  # the folder of raw files with their JPEGs, all of one body
+UNKNOWN_BODY = "unknown"  # how the names of bodies begin whose make and model nobody knows
 
 #: Words in `use` of DATA/real_bodies for a file that its publisher developed or edited.
 DEVELOPED = "edited/developed by software"

@@ -65,8 +65,7 @@ def export_onnx(network: nn.Module, signature: Signature, path: Path) -> None:
         opset_version=OPSET,
         dynamo=True,
     )
-    if program is None:
-        raise TypeError("torch.onnx.export returned no program; it does with dynamo=True")
+    assert program is not None  # with dynamo=True
     model = program.model_proto
     store_in_half_precision(model.graph)
     with atomic_write(path, overwrite=True) as temporary:

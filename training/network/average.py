@@ -24,9 +24,8 @@ from training.provenance import RUN_FILE, Record, read_run, write_json
 def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     """Write a run folder with the weighted mean of the last checkpoints of runs, and return its checkpoint.
 
-    Runs are folders of `training.network.train`, or model folders; each has a share, relative to the sum of all. The
-    run.json of `out` comes from the run with the largest share, and names all of them under "average". Raise SystemExit
-    if the networks differ in size or are not related, or the numbers of runs and shares differ.
+    Runs are folders of `training.network.train`, or of models. The run.json of `out` comes from the run with the
+    largest share, and names all under "average". Raise SystemExit if the networks differ in size or are not related.
     """
     if len(shares) != len(runs) or min(shares) <= 0:
         raise SystemExit("give each run a share above 0")

@@ -6,7 +6,7 @@ Sums grow with the number of samples, means do not: the network reads one window
 import math
 
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from crfnet_core.statistics import COUNTS_OF, SHAPES, unpack
 from crfnet_core.statistics.channel_equations import EQUATION_LEVELS, EQUATION_STRIDES
@@ -40,22 +40,19 @@ CONVERGED = 1e-10
 CURVATURE_UNIT, CURVATURE_LIMIT = 10, 3
 
 
-class Features(nn.Module):
-    """Four kinds of features, none of which grows with the number of samples."""
+def features_of(statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """Return four kinds of features of statistics, shape (..., LENGTH): of one window, or summed over several.
 
-    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return the features of statistics, shape (..., LENGTH): of one window, or summed over several.
-
-        The result: of the levels of each channel, (..., 3, LEVEL_FEATURES); of edges, (..., EDGE_FEATURES); of the
-        channel equations, (..., EQUATION_FEATURES); and of the candidate responses, (..., CANDIDATE_FEATURES).
-        """
-        parts = unpack(statistics)
-        return (
-            level_features(parts["histogram"], parts["gradients"]),
-            edge_features(parts["edges"], parts["histogram"].sum(-1).sum(-1)),
-            curvature_features(parts["channel_equations"]),
-            candidate_features(parts),
-        )
+    They are of the levels of each channel, (..., 3, LEVEL_FEATURES); of edges, (..., EDGE_FEATURES); of the channel
+    equations, (..., EQUATION_FEATURES); and of the candidate responses, (..., CANDIDATE_FEATURES).
+    """
+    parts = unpack(statistics)
+    return (
+        level_features(parts["histogram"], parts["gradients"]),
+        edge_features(parts["edges"], parts["histogram"].sum(-1).sum(-1)),
+        curvature_features(parts["channel_equations"]),
+        candidate_features(parts),
+    )
 
 
 def level_features(histogram: Tensor, gradients: Tensor) -> Tensor:
@@ -64,11 +61,10 @@ def level_features(histogram: Tensor, gradients: Tensor) -> Tensor:
     for sums in gradients.unbind(-4):  # (..., 3, GRADIENT_SUMS, LEVELS) of one stride
         absolute_difference, log_difference, equal, signed_difference, count = sums.unbind(-2)
         count = count + SAMPLE_PSEUDO_COUNT
-        equal_fraction = equal / count
         features += [
             (absolute_difference / count + 0.1).log(),
             log_difference / count,
-            equal_fraction,
+            equal / count,
             signed_difference / (absolute_difference + count / 2),
         ]
     return torch.cat(features, dim=-1)
@@ -118,9 +114,8 @@ def _second_differences() -> Tensor:
 def conjugate_gradients(matrix: Tensor, right: Tensor, *, steps: int) -> Tensor:
     """Return x of A x = r, shape (..., L), for symmetric positive definite A (..., L, L) and r (..., L).
 
-    Conjugate gradients are made of products alone, which every ONNX runtime has. The residuals are preconditioned with
-    the diagonal. The number of steps is fixed, because a graph has no loop that ends by itself; a system that is solved
-    before changes no more.
+    Conjugate gradients, preconditioned with the diagonal, are made of products alone, which every ONNX runtime has. The
+    steps are fixed, because a graph has no loop that ends by itself; a system that is solved before changes no more.
     """
     inverse_diagonal = 1 / torch.diagonal(matrix, dim1=-2, dim2=-1)
     x, residual = torch.zeros_like(right), right

@@ -15,13 +15,10 @@ ORDINARY = 0
 
 
 class EvidenceLoss:
-    """How probable evidence makes the truth among responses that the training photographs have.
+    """How probable evidence makes the truth among responses of training photographs, which are the prior of training.
 
-    The responses of all training photographs are the prior of training: the evidence is the factor between this prior
-    and the posterior, so the prior can be replaced afterwards.
-
-    weights, (M, 11): EMoR weights of the responses that the truth competes with
-    families, int (M,): 0 of an ordinary response, else 1 + its position in `UNUSUAL`
+    They have EMoR weights (M, 11) and families, int (M,): 0 of an ordinary response, else 1 + its position in
+    `UNUSUAL`. Evidence is the factor between this prior and the posterior, so the prior can be replaced afterwards.
     """
 
     def __init__(self, weights: Tensor, families: Tensor) -> None:
@@ -49,18 +46,14 @@ class EvidenceLoss:
         of_truth = log_likelihoods(evidence, weights[:, None], families[:, None]).squeeze(1)
         normalization = torch.logsumexp(torch.cat([scores, of_truth[:, None]], dim=1), dim=1)
         negative_log = normalization - of_truth - torch.log(torch.tensor(float(scores.shape[1])))
-        return negative_log + ERROR_WEIGHT * self._errors(scores, weights) * (families == ORDINARY)
-
-    def errors(self, evidence: EvidenceTensors, weights: Tensor) -> Tensor:
-        """Return the distance between the posterior's mean and the truth, shape (N,), in units of E_est."""
-        return self._errors(self.scores(evidence), weights)
+        return negative_log + ERROR_WEIGHT * self.errors(scores, weights) * (families == ORDINARY)
 
     def scores(self, evidence: EvidenceTensors) -> Tensor:
         """Return the log likelihood of every response that the truth competes with, shape (N, M)."""
         return log_likelihoods(evidence, self.weights[None], self.families[None])
 
-    def _errors(self, scores: Tensor, weights: Tensor) -> Tensor:
-        """Return the distance between the mean over the ordinary responses and the truth, shape (N,)."""
+    def errors(self, scores: Tensor, weights: Tensor) -> Tensor:
+        """Return the distance between the posterior's mean and the truth, shape (N,), in units of E_est."""
         posterior = scores.masked_fill(~self.is_ordinary, -torch.inf).softmax(1)
         return ((posterior @ self.weights - weights) ** 2).sum(1).add(1e-6).sqrt()
 

@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from training.network.features import CANDIDATE_FEATURES, EDGE_FEATURES, EQUATION_FEATURES, LEVEL_FEATURES, Features
+from training.network.features import CANDIDATE_FEATURES, EDGE_FEATURES, EQUATION_FEATURES, LEVEL_FEATURES, features_of
 
 #: Standard deviations to which normalized features are clipped: a photograph may be unlike all training photographs.
 LARGEST_FEATURE = 6
@@ -58,7 +58,6 @@ class Embedding(nn.Module):
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
-        self.features = Features()
         self.levels = KindLayer(LEVEL_FEATURES, config)
         self.edges = KindLayer(EDGE_FEATURES, config)
         self.equations = KindLayer(EQUATION_FEATURES, config)
@@ -71,7 +70,7 @@ class Embedding(nn.Module):
         The three channels share a layer, and their vectors are pooled by mean and maximum: their order does not matter.
         """
         with torch.no_grad(), torch.autocast("cpu", enabled=False):
-            levels, edges, equations, candidates = self.features(statistics)
+            levels, edges, equations, candidates = features_of(statistics)
         channels = self.levels(levels)  # (N, 3, width)
         kinds = [self.edges(edges), self.equations(equations), self.candidates(candidates)]
         return self.trunk(torch.cat([channels.mean(1), channels.amax(1), *kinds], dim=1))

@@ -30,11 +30,8 @@ from training.synthesis.camera import reference_luminance
 from training.synthesis.photographs import PhotographSource
 from training.synthesis.unusual import UnusualKind
 
-#: Photographs in a shard file.
-SHARD = 500
-
-#: Statistics are kept as float16, in units of this many samples.
-UNIT = 256
+SHARD = 500  # photographs in a shard file
+UNIT = 256  # statistics are kept as float16, in units of this many samples
 
 
 class CurveSet(IntEnum):

@@ -16,17 +16,10 @@ from training.network.start import start_from, start_record
 from training.provenance import data_record, record_run
 from training.state import TrainingState, moving_average
 
-#: The file of the last checkpoint in the folder of a run.
-CHECKPOINT = "last.pt"
-
-#: Largest norm of the gradient of a step.
-CLIP = 1.0
-
-#: The learning rate begins at the highest one divided by this.
-FIRST_DIVISOR = 25.0
-
-#: Responses of training photographs that the truth competes with in the loss.
-COMPETITORS = 2048
+CHECKPOINT = "last.pt"  # the file of the last checkpoint in the folder of a run
+CLIP = 1.0  # largest norm of the gradient of a step
+FIRST_DIVISOR = 25.0  # the learning rate begins at the highest one divided by this
+COMPETITORS = 2048  # responses of training photographs that the truth competes with in the loss
 
 
 @dataclass(frozen=True)
@@ -54,8 +47,7 @@ class TrainingConfig:
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
-    The folder `run` gets run.json, last.pt, and log.csv with the epoch, the training loss, and of the validation
-    photographs the loss and the distance between the posterior's mean and the truth, in units of E_est. The run starts
+    The folder `run` gets run.json, last.pt, and log.csv: epoch, training loss, and `validation_errors`. The run starts
     from the weights of `init`, a checkpoint or a model folder, as far as it has them. Raise SystemExit if `run` holds a
     run of another recipe or on other shards.
     """
@@ -91,7 +83,7 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             families = shards.families[rows]
             _, evidence = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
             losses.append(loss.of_each(evidence, weights, families))
-            errors.append(loss.errors(evidence, weights)[families == ORDINARY])
+            errors.append(loss.errors(loss.scores(evidence), weights)[families == ORDINARY])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
 
 

@@ -8,9 +8,8 @@ from crfnet_core.types import Float32Array
 from training.data.scenes import LUMINANCE
 from training.synthesis.picture import box_blurred, resized
 
-#: Fractions of photographs: without color, under an illumination gradient, with another large-scale contrast, and
-#: with a power law on the irradiance.
-GRAY, GRADIENT, CONTRAST, POWER = 0.25, 0.3, 0.2, 0.3
+#: Fractions of photographs: without color, under an illumination gradient, and with a power law on the irradiance.
+GRAY, GRADIENT, POWER = 0.25, 0.3, 0.3
 
 #: Range of the standard deviation of the logarithm of the luminance up to which texture is taken out.
 TEXTURE = (0.05, 0.7)
@@ -31,14 +30,11 @@ def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4)
     return turned @ matrix.T.astype(np.float32)
 
 
-def relight(
-    light: Float32Array, rng: np.random.Generator, *, contrasted: float = CONTRAST, contrast: float = 0.0
-) -> Float32Array:
+def relight(light: Float32Array, rng: np.random.Generator, *, contrasted: float, contrast: float) -> Float32Array:
     """Return windows (N, S, S, 3), float32, some under a smooth illumination gradient, some with other contrast.
 
-    A power law on the irradiance changes how light mixes at edges, which the network measures, so the power stays near
-    1. A change of the contrast at large scale leaves edges as they are, so it may be large: a fraction `contrasted` of
-    the windows has one, and the logarithm of the factor on the contrast is `contrast` on average.
+    A power law changes how light mixes at edges, which the network measures, so it stays near 1. Contrast at large
+    scale leaves edges as they are: a fraction `contrasted` has a factor on it, whose mean logarithm is `contrast`.
     """
     if rng.random() < GRADIENT:
         light = light * illumination_gradient(len(light), rng, side=light.shape[1])
@@ -49,7 +45,7 @@ def relight(
     return np.ascontiguousarray(light, dtype=np.float32)
 
 
-def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> Float32Array:
+def illumination_gradient(count: int, rng: np.random.Generator, *, side: int) -> Float32Array:
     """Return smooth gains around 1, shape (count, side, side, 1): one wave across each window, of up to 2 stops."""
     position = np.linspace(0, 1, side, dtype=np.float32)
     angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1)).astype(np.float32)
@@ -58,7 +54,7 @@ def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = W
     return np.exp2(height * np.sin(frequency * across + phase))[..., None]
 
 
-def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float = 0.0) -> Float32Array:
+def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float) -> Float32Array:
     """Return smooth gains, shape (N, S, S, 1), that raise or lower the large-scale contrast of windows."""
     log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
     radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
@@ -79,9 +75,8 @@ def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
 def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[float, float]) -> Float32Array:
     """Return windows (N, S, S, 3) with weaker texture, as of walls and skies, and the same edges.
 
-    The neighborhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
-    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighborhood is
-    below a random one (the local filter of Lee, 1980); at edges it is 1, so they mix light as before.
+    A gain takes out the variation of the log luminance where its standard deviation in a neighborhood is below a random
+    one (the local filter of Lee, 1980). `reach` is the neighborhood's, in 227ths of the side.
     """
     size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1
     variance = np.float32(np.exp(rng.uniform(*np.log(TEXTURE))) ** 2)

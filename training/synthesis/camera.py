@@ -81,9 +81,8 @@ def sensor_light(
 ) -> Float32Array:
     """Return the linear light that reaches the sensor, before exposure, float32 (H, W, 3).
 
-    A panorama is dithered first (`training.data.scenes.dithered`). `gains` is the white balance, factors on red, green
-    and blue, scaled so that a neutral keeps its luminance. If `is_gray`, all channels hold the luminance. `blur` is the
-    variance of a Gaussian, in squared pixels of the scene.
+    A panorama is dithered first. `gains` is the white balance (see `balanced_gains`). If `is_gray`, all channels hold
+    the luminance. `blur` is the variance of a Gaussian, in squared pixels of the scene.
     """
     light = dithered(scene.pixels, rng) if scene.is_panorama else scene.pixels
     light = light * balanced_gains(gains)

@@ -36,9 +36,8 @@ ROLL_OFF, CONTRAST = 1.5, 0.8
 def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contrast: float = CONTRAST) -> Float64Array:
     """Return brightness f(E) of a simulated camera, by default the plate's: roll-off, sRGB encoding, S-curve.
 
-    With s = `roll_off`, k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
-    f = (1 - k) v + k v^2 (3 - 2 v). Nobody measured this curve, but cameras have such curves. E is in [0, 1], of any
-    shape; s = 1 leaves the roll-off out and k = 0 the S-curve; with k = 1 it is smoothstep.
+    Nobody measured this curve, but cameras have such curves. E is in [0, 1]; `roll_off` 1 leaves the roll-off out and
+    `contrast` 0 the S-curve, which is smoothstep at 1.
     """
     rolled = roll_off * irradiance / (1 + (roll_off - 1) * irradiance)
     encoded = srgb_encode(rolled)

@@ -85,9 +85,8 @@ def develop(
 ) -> Uint8Array:
     """Return the windows of a photograph, uint8 (windows, 227, 227, 3), from the response, (1024,).
 
-    `irradiance`, float32 (N, S, S, 3), is the exposed light of frames of S >= 227 samples along each side; above 1 it
-    clips. Where all channels are equal the noise has no color. `windows` is a multiple of N, and N by default: a frame
-    that is point-sampled may give several.
+    `irradiance`, float32 (N, S, S, 3), is the exposed light of frames of S >= 227 samples along each side. `windows` is
+    a multiple of N, and N by default: a frame that is point-sampled may give several.
     """
     planes = [np.ascontiguousarray(irradiance[..., channel]) for channel in range(3)]
     if development.lens_blur:
@@ -106,10 +105,8 @@ def develop(
     if development.export is None:
         return point_sampled(codes, (windows or len(codes)) // len(codes), development.scatter, rng)
     export = development.export
-    codes = resized(codes, WINDOW_SIZE, export.resample)
-    if export.finish != Finish():
-        codes = rounded(export.finish.applied(split(codes)))
-    return export.jpeg.compressed(codes)
+    small = split(resized(codes, WINDOW_SIZE, export.resample))
+    return export.jpeg.compressed(rounded(export.finish.applied(small)))
 
 
 def looked_up(plane: Float32Array, curve: Float64Array) -> Float32Array:

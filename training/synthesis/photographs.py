@@ -20,11 +20,9 @@ from training.synthesis.unusual import UnusualKind, random_exposure, unusual_win
 #: Cameras that take the same windows of a scene, and windows drawn for each that is taken, by the codes that they fill.
 CAMERAS, TRIED = 3, 2
 
-#: Codes, of 256, that the best window of a training photograph fills at least.
-LEAST_FILLED = 120
-
-#: Each photograph uses scenes of one of so many folds; training uses all of them.
-FOLDS = 3
+LEAST_FILLED = 120  # codes, of 256, that the best window of a training photograph fills at least
+FOLDS = 3  # each photograph uses scenes of one of so many folds; training uses all of them
+DEFOCUSED = 0.35  # fraction of the photographs of cameras that develop in which parts are out of focus
 
 #: Fractions of photographs: half of the windows show another scene; windows are resampled at any angle and scale; two
 #: scenes are composited in every window; only the response and 8-bit rounding lie between the light and the file.
@@ -34,9 +32,6 @@ TWO_SCENES, RESAMPLED, COMPOSITED, CLEAN = 0.25, 0.35, 0.15, 0.15
 #: frames as they are, and in those that are point-sampled, which show more of the scene.
 UNTEXTURED = {FrameKind.PLAIN: 0.0, FrameKind.NATIVE: 0.0, FrameKind.SAMPLED: 0.4, FrameKind.SCALED: 0.3}
 REACH = ((2, 8), (2, 12))
-
-#: Fraction of the photographs of cameras that develop in which parts are out of focus.
-DEFOCUSED = 0.35
 
 #: Fraction of the plain captures of a scene without color whose file has none either: its channels are equal, also
 #: where noise would have made them differ. Cameras that develop always write such files.
@@ -165,7 +160,7 @@ def _scene_windows(scene: Scene, count: int, side: int, rng: np.random.Generator
     tried = count * TRIED
     if rng.random() < RESAMPLED or min(scene.pixels.shape[:2]) < side:
         drawn = [AffineResampling.draw(scene, rng, side=side) for _ in range(tried)]
-        chosen = [drawn[i].window() for i in _best_covering([one.thumbnail() for one in drawn], count)]
+        chosen = [drawn[i].window() for i in _best_covering([one.window(THUMBNAIL_STEP) for one in drawn], count)]
     else:
         crops = [_crop(scene, side, rng) for _ in range(tried)]
         thumbnails = [crop[::THUMBNAIL_STEP, ::THUMBNAIL_STEP] for crop in crops]

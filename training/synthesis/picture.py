@@ -23,16 +23,11 @@ STANDARD_TABLES = tuple(np.array(table, np.float64) for table in (ANNEX_K_LUMA, 
 
 @dataclass(frozen=True)
 class Jpeg:
-    """A JPEG compression.
+    """A JPEG compression."""
 
-    scale: factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98
-    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie
-    subsampling: 0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0)
-    """
-
-    scale: float = 0.2
-    flatness: float = 0.0
-    subsampling: int = 2
+    scale: float = 0.2  # factor on the standard's tables: 1 is IJG quality 50, 0.2 quality 90, 0.04 quality 98
+    flatness: float = 0.0  # in [0, 1]: 0 for the standard's tables; the more, the nearer all steps lie
+    subsampling: int = 2  # 0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both
 
     @property
     def tables(self) -> list[list[int]]:

@@ -15,15 +15,12 @@ from training.data.scenes import Scene
 #: whose lens does not resolve its pixels.
 SCALES = (0.55, 3.0)
 
-#: Standard deviation of the logarithm of the stretch along one axis.
-STRETCH = 0.12
+STRETCH = 0.12  # standard deviation of the logarithm of the stretch along one axis
+THUMBNAIL_STEP = 4  # step between the samples that a thumbnail keeps along both sides
 
 #: Standard deviation of the Gaussian before sampling, in units of the distance between samples. It averages linear
 #: light, as a sensor does.
 PREFILTER = 0.45
-
-#: Step between the samples that a thumbnail keeps along both sides.
-THUMBNAIL_STEP = 4
 
 
 @dataclass(frozen=True)
@@ -51,16 +48,8 @@ class AffineResampling:
         """The distance between samples, in pixels of the scene."""
         return float(np.sqrt(abs(np.linalg.det(self.matrix))))
 
-    def window(self) -> Float32Array:
-        """Return the linear window, float32 (side, side, 3)."""
-        return self._sampled(1)
-
-    def thumbnail(self) -> Float32Array:
-        """Return every fourth sample along both sides, not prefiltered, float32 (C, C, 3)."""
-        return self._sampled(THUMBNAIL_STEP)
-
-    def _sampled(self, step: int) -> Float32Array:
-        """Return every step-th sample, bilinear between the pixels of the scene."""
+    def window(self, step: int = 1) -> Float32Array:
+        """Return every step-th sample, bilinear, float32 (C, C, 3); the whole window is prefiltered."""
         reach = np.abs(self.matrix) @ np.full(2, self.side / 2) + 3 * max(1.0, self.scale)
         first, last = np.floor(self.center - reach).astype(int), np.ceil(self.center + reach).astype(int)
         size = self.scene.pixels.shape[:2]

@@ -29,26 +29,16 @@ class Demosaicing(StrEnum):
 
 @dataclass(frozen=True)
 class Sensor:
-    """A sensor and what is done to its values before the tone curve; the defaults leave every step out.
+    """A sensor and what is done to its values before the tone curve; the defaults leave every step out."""
 
-    shot_noise: variance of the noise at irradiance 1 in a channel of gain 1; it is proportional to the irradiance
-    read_noise: standard deviation of the noise that does not depend on the irradiance, in a channel of gain 1
-    gains: white balance: factors on the sensor's red, green and blue, which multiply the noise, too
-    white: irradiance at which a channel of gain 1 clips; the response ends at 1
-    clips_apart: whether each channel clips where the sensor does, at its gain times `white`, rather than all at `white`
-    crosstalk: part of each channel, in [0, 1), that is the mean of all three; the matrix takes it out again
-    saturation: factor on the distance of a color from its luminance; above 1, saturated colors become negative and clip
-    demosaicing: how the mosaic is filled; None for a sensor that measures all colors everywhere
-    """
-
-    shot_noise: float = 0.0
-    read_noise: float = 0.0
-    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    white: float = np.inf
-    clips_apart: bool = False
-    crosstalk: float = 0.0
-    saturation: float = 1.0
-    demosaicing: Demosaicing | None = None
+    shot_noise: float = 0.0  # variance of the noise at irradiance 1 and gain 1; it is proportional to the irradiance
+    read_noise: float = 0.0  # standard deviation of the noise that does not depend on the irradiance, at gain 1
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)  # white balance, which multiplies the noise, too
+    white: float = np.inf  # irradiance at which a channel of gain 1 clips; the response ends at 1
+    clips_apart: bool = False  # whether each channel clips at its gain times `white`, rather than all at `white`
+    crosstalk: float = 0.0  # part of each channel, in [0, 1), that is the mean of all; the matrix takes it out again
+    saturation: float = 1.0  # factor on the distance of a color from its luminance; above 1, saturated colors clip
+    demosaicing: Demosaicing | None = None  # None for a sensor that measures all colors everywhere
 
     def record(self, irradiance: Planes, rng: np.random.Generator) -> Planes:
         """Return the irradiance that the tone curve gets, nowhere negative; the planes given are not changed."""

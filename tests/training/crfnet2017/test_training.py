@@ -68,7 +68,7 @@ def test_the_papers_recipe_is_the_published_one():
     steps = (0, 499_999, 500_000, 1_999_999)
     assert [learning_rate(classify, step) for step in steps] == pytest.approx([1e-2, 1e-2, 1e-3, 1e-5])
     assert [learning_rate(regress, step) for step in (0, 19_999, 24_999)] == pytest.approx([1e-4, 1e-4, 1e-5])
-    optimizer = make_optimizer(CRFNet(), regress)
+    optimizer, _ = make_optimizer(CRFNet(), regress)
     assert isinstance(optimizer, torch.optim.SGD)
     assert [(group["momentum"], group["weight_decay"]) for group in optimizer.param_groups] == [(0.9, 0.0005)] * 2
 
@@ -84,7 +84,7 @@ def test_the_first_stage_learns(scenes):
     torch.manual_seed(0)
     network = CRFNet(task.outputs)
     averaged = moving_average(network, config.recipe.averaged_steps)
-    state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
+    state = TrainingState(network, averaged, *make_optimizer(network, config.recipe))
     batch = draw_windows(scenes, 2, seed=5)
     trainer = Trainer(config, task, state, scenes, batch)
     losses = [float(trainer.step(batch)) for _ in range(3)]

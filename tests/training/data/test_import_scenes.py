@@ -52,6 +52,7 @@ def bad_files(folder):
     write_float(folder / "small.hdr", np.full((226, 400, 3), 0.5))
     write_float(folder / "black.exr", np.zeros((240, 240, 3)))
     write_float(folder / "endless.exr", np.full((240, 240, 3), np.inf))
+    write_image(folder / "encoded.exr", np.zeros((240, 240, 3), np.float16), colorInteropID="srgb_rec709_scene")
     return {
         "jpeg.jpg": "is not scene-linear; give camera raw, OpenEXR or Radiance HDR",
         "cut.dng": "LibRaw cannot develop it (Input/output error)",
@@ -63,6 +64,7 @@ def bad_files(folder):
         "small.hdr": "226 rows or columns are too few; windows need 227",
         "black.exr": "is black",
         "endless.exr": "is black",
+        "encoded.exr": "calls itself srgb_rec709_scene, which is not scene-linear",
         "absent.nef": "No such file",
     }
 
@@ -81,8 +83,8 @@ def test_bad_files_are_one_line_each_and_stop_no_others(tmp_path, out, capsys):
     assert [row["file"] for row in manifest(out)] == ["good.exr"]
 
 
-def test_an_exr_that_calls_itself_encoded_is_refused(tmp_path):
-    path = tmp_path / "encoded.exr"
-    write_image(path, np.zeros((240, 240, 3), np.float16), colorInteropID="srgb_rec709_scene")
-    with pytest.raises(PhotoError, match="calls itself srgb_rec709_scene, which is not scene-linear"):
+def test_channels_are_named_even_if_their_names_are_not_utf8(tmp_path):
+    path = write_float(tmp_path / "odd.exr", np.full((240, 240, 2), 0.5), names=("X", "Zone"))
+    path.write_bytes(path.read_bytes().replace(b"Zone", b"Z\xffne"))
+    with pytest.raises(PhotoError, match="found X, Z\udcffne"):
         linear_scene(path)

@@ -59,14 +59,9 @@ def test_every_file_has_a_row_and_rows_are_sorted(data, written):
     assert rows == sorted(rows) == manifest_rows(data)
     assert str(data) not in written.read_text()
     by_file = {row.file: row for row in rows}
-    assert by_file["real/input/one.jpg"] == ManifestRow(
-        "real/input/one.jpg",
-        "real photograph",
-        "a/b:c.jpg",
-        NO_LICENCE,
-        "measured only",
-        "60a5827806738f73207efeb1f332e69846ed6dd9455546dc23c9f0b8a7777778",
-    )
+    name, sha256 = "real/input/one.jpg", "60a5827806738f73207efeb1f332e69846ed6dd9455546dc23c9f0b8a7777778"
+    row = ManifestRow(name, "real photograph", "a/b:c.jpg", NO_LICENCE, "measured only", sha256)
+    assert by_file[name] == row
     assert by_file["real_bodies/photos/two.webp"].split == "measured only, fold 3"
     assert by_file["real_bodies/cases.csv"].split == "decides grade, fold and use"
     assert by_file["real_bodies/photos/two.webp"].licence == "MIT (LICENSE)"

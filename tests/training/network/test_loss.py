@@ -67,5 +67,6 @@ def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):
     counts = {family: float(bank.members(family).sum()) for family in bank.families if family not in UNUSUAL}
     prior = Prior("p", {family: count / sum(counts.values()) for family, count in counts.items()}, 1.0)
     mean = Posterior.from_evidences(bank, prior, [evidence]).mean_weights
-    found = EvidenceLoss(*competitors).errors(tensors, torch.zeros(1, 11, dtype=torch.float64))
+    loss = EvidenceLoss(*competitors)
+    found = loss.errors(loss.scores(tensors), torch.zeros(1, 11, dtype=torch.float64))
     assert float(found) == pytest.approx(np.linalg.norm(mean), abs=1e-5)

@@ -9,8 +9,8 @@ from training.network.features import (
     EDGE_FEATURES,
     EQUATION_FEATURES,
     LEVEL_FEATURES,
-    Features,
     conjugate_gradients,
+    features_of,
 )
 from training.network.model import (
     LARGEST_RAW,
@@ -41,7 +41,7 @@ def network():
 
 
 def test_features_are_finite_and_of_the_sizes_named(statistics):
-    levels, edges, equations, candidates = Features()(statistics)
+    levels, edges, equations, candidates = features_of(statistics)
     assert levels.shape == (3, 3, LEVEL_FEATURES)
     assert edges.shape == (3, EDGE_FEATURES)
     assert equations.shape == (3, EQUATION_FEATURES)
@@ -89,7 +89,7 @@ def test_the_order_of_windows_and_of_channels_does_not_matter(network, statistic
     for pooled, turned_pooled in zip(expected[3:], turned[3:], strict=True):
         np.testing.assert_allclose(turned_pooled, pooled, atol=1e-5)
     assert [tuple(part.shape) for part in expected] == [(3, 5), (3, 5, 5), (3, 3), (1, 5), (1, 5, 5), (1, 3)]
-    levels = Features()(statistics)[0]
+    levels = features_of(statistics)[0]
     assert not torch.allclose(levels[:, 0], levels[:, 1])
 
 

@@ -18,25 +18,19 @@ ERRORS = ("E_est", "E_lin", "shape")
 #: (CRF-net paper, Fig. 9: the upper 20 % of the pixel range are ignored, and the estimate is scaled).
 PARTIAL_BRIGHTNESS, SCALES = 0.8, (0.3, 3.0)
 
-#: Decimals of the figures.
-DECIMALS = 6
-
-#: EMoR weights that are kept: those that matter (docs/METHOD.md).
-WEIGHTS = 3
+DECIMALS = 6  # decimals of the figures
+WEIGHTS = 3  # EMoR weights that are kept: those that matter (docs/METHOD.md)
+CODES = np.arange(256) / 255  # the values of 8-bit codes, in [0, 1]
 
 #: Samples that EMoR weights are fitted to, and their decimals: so that correlations compare with earlier reports.
 FITTED_SAMPLES, FITTED_DECIMALS = 65, 4
 
-#: The values of 8-bit codes, in [0, 1].
-CODES = np.arange(256) / 255
-
 
 def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
-    """Return the errors of one response on one photograph.
+    """Return the errors of one response on one photograph, in which codes occur as often as `counts`, (256,), says.
 
-    `true`, `estimated`: the responses. `counts`, int (256,): how often each code occurs in the photograph. The result:
-    the errors of `ERRORS`; "scale", by how many stops the light is too bright; and "lower" and "partial", the E_est
-    over the samples up to `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
+    "scale" is by how many stops the light is too bright; "lower" and "partial" are the E_est over the samples up to
+    `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
     """
     linearization = round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS)
     return {

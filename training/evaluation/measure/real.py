@@ -55,8 +55,7 @@ def measure_real(
 ) -> None:
     """Add to the table what it lacks of a folder: baselines, and models on photographs alone and several of a body.
 
-    `photographs`: all photographs of the folder. `test_set`: the responses of DoRF, for the baselines, and the data
-    folder. The bank that a photograph is estimated with knows nothing of the bodies of its fold.
+    The bank that a photograph is estimated with knows nothing of the bodies of its fold.
     """
     assert test_set.data is not None
     _measure_baselines(protocol, photographs, table, test_set)
@@ -168,11 +167,8 @@ def mean_of_other_bodies(
 ) -> ResponseCurve:
     """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
 
-    This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
-    that need caution are left out of it. Without another body it is gamma 2.2.
-
-    `photograph`: its fold is left out. `photographs`: all of the folder. `truths`: file of a measured response ->
-    response.
+    It stands for someone who knows cameras and does not look at the photograph. Responses that need caution are left
+    out; without another body it is gamma 2.2. `truths` has the response of each file of `photographs`.
     """
     bodies: dict[str, dict[Path, ResponseCurve]] = {}
     for other in photographs:

@@ -26,20 +26,15 @@ from training.evaluation.plan import CLEAN, SEED, Condition, TestPhotograph
 from training.evaluation.test_sets import SceneFile, TestSet
 from training.synthesis.camera import code_counts, render_photo, sensor_light
 
-#: The prior of simulated photographs, whose responses are of any kind.
-PRIOR = "any"
-
-#: The name, in the table, of the protocol that repeats the experiments of the CRF-net paper.
-PAPER = "paper"
+PRIOR = "any"  # the prior of simulated photographs, whose responses are of any kind
+PAPER = "paper"  # the name, in the table, of the protocol that repeats the experiments of the CRF-net paper
+JOB_SIZE = 20  # the most photographs of a job: few enough to spread over processes and to write often
 
 #: What follows a model's name -> how it is asked: the paper's Fig. 3, on the clean photographs of `PAPER`.
 WAYS = {
     ", one chosen window": AnalysisOptions(windows=1),
     ", one random window": AnalysisOptions(windows=1, coverage=0),
 }
-
-#: The most photographs of a job: few enough to spread over processes and to write often.
-JOB_SIZE = 20
 
 
 @dataclass(frozen=True, eq=False)

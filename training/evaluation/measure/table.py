@@ -20,10 +20,10 @@ KEY = ("protocol", "photograph", "estimator", "model")
 #: The code whose change makes earlier rows doubtful, from the project's root.
 MEASURING_CODE = (
     "crfnet_core/**/*.py",
-    "crfnet_core/data/responses.npz",
+    "crfnet_core/data/*.npz",
     "crfnet_core/data/priors/*.json",
-    "crfnet_core/data/emor.npz",
-    "training/data/**/*.py",
+    "training/data/*.py",
+    "training/data/real_kinds.csv",
     "training/synthesis/camera.py",
     "training/synthesis/unusual/*.py",
     "training/evaluation/baselines.py",
@@ -36,10 +36,7 @@ MEASURING_CODE = (
 class Table:
     """Rows on disk: each is written as soon as it is measured, and read again by the next run.
 
-    The first line of the file holds the settings that all rows depend on.
-
-    path: the file; made where absent
-    settings: what every row depends on
+    The file is made where absent. Its first line holds the settings that all rows depend on.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any]) -> None:

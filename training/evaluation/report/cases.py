@@ -86,10 +86,9 @@ class Cases:
 class Resampling:
     """Weights of N photographs, float64 (1 + R, N): 1 in the first row, random counts, not all 0, in the R others.
 
-    Scenes and responses are both samples and drawn with replacement, each on its own; a photograph counts as often as
-    its scene times as its response. The same weights serve every estimator, so that differences are paired.
-
-    Source: Owen, "The pigeonhole bootstrap", Annals of Applied Statistics 2007; its intervals are a little too wide.
+    Scenes and responses are drawn with replacement, each on its own; a photograph counts as often as its scene times as
+    its response. The same weights serve every estimator, so that differences are paired. Source: Owen, "The pigeonhole
+    bootstrap", Annals of Applied Statistics 2007; its intervals are a little too wide.
     """
 
     weights: Float64Array

@@ -18,14 +18,9 @@ Figures = dict[str, Any]
 #: much as the mean of the other bodies.
 FAR_OFF = {"E_est": 3.0, "shape": 0.4}
 
-#: The least mean E_lin (x 1e-2) of which a PSNR is given.
-LEAST_LINEARIZATION = 1e-9
-
-#: Fewer bodies have no meaningful correlation.
-LEAST_BODIES = 3
-
-#: Product of the two variances up to which a weight counts as constant.
-LEAST_SPREAD = 1e-12
+LEAST_LINEARIZATION = 1e-9  # the least mean E_lin (x 1e-2) of which a PSNR is given
+LEAST_BODIES = 3  # fewer bodies have no meaningful correlation
+LEAST_SPREAD = 1e-12  # product of the two variances up to which a weight counts as constant
 
 
 def errors(cases: Cases, estimator: str) -> Figures:

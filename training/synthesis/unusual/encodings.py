@@ -16,8 +16,9 @@ from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, enlarged, jpeg_compressed
 from training.synthesis.demo_plate import camera_response
 
-#: The sRGB encoding as a response, at 1024 irradiances.
-SRGB = srgb_encode(UNIFORM)
+SRGB = srgb_encode(UNIFORM)  # the sRGB encoding as a response, at 1024 irradiances
+POWERS = (0.85, 1.15)  # powers on the irradiance of near-linear data
+TABLE = 2**14  # entries of a table from irradiance to codes: sixteen for each sample of a response
 
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
 ROLL_OFF, CONTRAST = (1.0, 3.5), (0.4, 1.0)
@@ -43,15 +44,9 @@ LOG_STOPS, WIDE_GAMUT = (-1.0, 2.5), (0.05, 0.3)
 #: Fraction of log footage whose code values 64 to 940 of 1023 were stretched to the whole range when it was decoded.
 STRETCHED = 0.3
 
-#: Powers on the irradiance of near-linear data.
-POWERS = (0.85, 1.15)
-
 #: How many times the light is enlarged for a messenger, how many pixels along each side it then averages to one, and
 #: its JPEG qualities.
 ENLARGED, SCALED_BY, MESSENGER_QUALITY = 2, (2, 3, 4), (60, 75)
-
-#: Entries of a table from irradiance to codes: sixteen for each sample of a response.
-TABLE = 2**14
 
 
 def log_footage(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -17,14 +17,11 @@ BASE, BASE_DEVIATION = np.array([0.25, 0.55, 0.8]), 0.08
 #: Range of density above the base, and the contrast of the middle in density per decade of light.
 DENSITY_RANGE, CONTRAST = (1.4, 2.2), (0.5, 0.75)
 
-#: Decades between middle density and the light whose white is 1.
-MIDDLE = (-1.3, -0.6)
+MIDDLE = (-1.3, -0.6)  # decades between middle density and the light whose white is 1
+LEFT_NEGATIVE = 0.2  # fraction of scans that are left negative
 
 #: Standard deviation of the grain in density, and its size in samples.
 GRAIN, GRAIN_SIZE = (0.004, 0.03), (0.4, 1.3)
-
-#: Fraction of scans that are left negative.
-LEFT_NEGATIVE = 0.2
 
 #: Mean number of specks and of hairs on as many samples as a window has.
 SPECKS, HAIRS = 2.5, 0.3

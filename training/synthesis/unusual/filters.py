@@ -10,11 +10,8 @@ from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, blurred
 from training.synthesis.unusual.encodings import camera_rendering, codes_of, saturated
 
-#: Brightness at which the nodes of a filter's curves lie.
-NODES = np.array([0, 0.25, 0.5, 0.75, 1])
-
-#: Colors of a palette, from a small GIF to a larger one.
-PALETTE_SIZE = (32, 128)
+NODES = np.array([0, 0.25, 0.5, 0.75, 1])  # brightness at which the nodes of a filter's curves lie
+PALETTE_SIZE = (32, 128)  # colors of a palette, from a small GIF to a larger one
 
 #: Nodes of false-color palettes, evenly spaced from cold to hot: red, green and blue.
 FALSE_COLORS = {

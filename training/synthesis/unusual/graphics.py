@@ -10,20 +10,13 @@ from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
 from training.synthesis.unusual.encodings import camera_rendering, codes_of
 
-#: Sizes of letters, in pixels.
-LETTER_SIZES = (9, 11, 13, 16, 20)
+LETTER_SIZES = (9, 11, 13, 16, 20)  # sizes of letters, in pixels
+INSET_SIDES = (0.25, 0.75)  # sides of the photograph in a screenshot, as fractions of the screen's
+SHAPES = (6, 24)  # range of the number of shapes in a drawing of a window's size
+DRAWN_SIZE = 2 * WINDOW_SIZE  # the side of a window at the size at which drawings are drawn: twice their own
 
 #: Length of a word in letters, and words of a line at most.
 WORD, WORDS = (1, 11), 60
-
-#: Sides of the photograph in a screenshot, as fractions of the screen's.
-INSET_SIDES = (0.25, 0.75)
-
-#: Range of the number of shapes in a drawing of a window's size.
-SHAPES = (6, 24)
-
-#: The side of a window at the size at which drawings are drawn: twice their own.
-DRAWN_SIZE = 2 * WINDOW_SIZE
 
 Color = tuple[int, int, int]
 

@@ -9,8 +9,8 @@ from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response
 from training.synthesis.unusual.encodings import SRGB
 
-#: Least luminance that a tone-mapping operator separates from black.
-DARKEST = np.float32(1e-4)
+DARKEST = np.float32(1e-4)  # least luminance that a tone-mapping operator separates from black
+GLOBAL_STOPS = (1.5, 6.0)  # stops that a global operator exposes above the light whose white is 1
 
 #: Percentile of the luminance that an operator takes for the brightest light: single lamps and the sun lie above it.
 BRIGHTEST = 99.8
@@ -18,9 +18,6 @@ BRIGHTEST = 99.8
 #: Side of the guided filter's box, in samples of a window; the factor on the contrast of the base layer, and on that of
 #: the details; the power on the ratios of color. Phones do so too, but far less.
 BOX, COMPRESSION, DETAIL, COLOR_POWER = (11, 61), (0.15, 0.45), (1.2, 2.5), (1.0, 1.7)
-
-#: Stops that a global operator exposes above the light whose white is 1.
-GLOBAL_STOPS = (1.5, 6.0)
 
 
 def local_tone_mapping(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -12,17 +12,14 @@ from training.synthesis.unusual.encodings import SRGB, saturated
 #: The range of Filmic and AgX in stops, below and above middle gray.
 BLACK_STOPS, WHITE_STOPS, GRAY = -10.0, 6.5, 0.18
 
-#: Where middle gray lies between the two.
-PIVOT = BLACK_STOPS / (BLACK_STOPS - WHITE_STOPS)
+PIVOT = BLACK_STOPS / (BLACK_STOPS - WHITE_STOPS)  # where middle gray lies between the two
+RENDERING_STOPS = (-1.0, 2.0)  # stops by which somebody who renders moves the exposure
 
 #: AgX as in Blender 4: from linear Rec.709 to Rec.2020, inset (E. Chow and T. Sobotka, AgX_LUT_Gen; rows give red,
 #: green and blue), and the way back through the outset.
 REC2020 = np.array([[0.627404, 0.329283, 0.043313], [0.069097, 0.919541, 0.011362], [0.016391, 0.088013, 0.895595]])
 INSET = np.array([[0.856627, 0.095121, 0.048252], [0.137319, 0.761242, 0.101439], [0.111898, 0.076799, 0.811302]])
 OUTSET = np.array([[0.899797, 0.087200, 0.013003], [0.111421, 0.875576, 0.013003], [0.111421, 0.087200, 0.801379]])
-
-#: Stops by which somebody who renders moves the exposure.
-RENDERING_STOPS = (-1.0, 2.0)
 
 
 @dataclass(frozen=True)
