@@ -65,7 +65,7 @@ class Coding:
             return None
         matrix, color_range = codes or (int(frame.colorspace), int(frame.color_range))
         is_rgb, is_gray = form.is_rgb or form.has_palette, len(form.components) < 3
-        is_full, assumptions = is_rgb or color_range == _FULL_RANGE, []
+        is_full, assumptions = color_range == _FULL_RANGE, []
         if is_rgb or is_gray:
             weights: tuple[str, float, float] | None = ("RGB", 0.0, 0.0)
         else:
@@ -73,9 +73,10 @@ class Coding:
                 matrix = 5 if is_still or lines < HD_LINES else 1
                 assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
             weights = MATRICES.get(matrix)
-        if not is_rgb and color_range == 0:  # gray is full range, as FFmpeg takes it
-            is_full = is_still or is_gray
-            assumptions.append(f"does not say its range: {'full taken, as it is gray' if is_gray else 'limited taken'}")
+        if color_range == 0:  # gray is full range, as FFmpeg takes it
+            is_full = is_still or is_gray or is_rgb
+            taken = "full taken, as it is gray" if is_gray else "limited taken"
+            assumptions += [] if is_rgb else [f"does not say its range: {taken}"]
         if len(form.components) in (2, 4):
             assumptions.append("does not say how its alpha is meant: colors not multiplied by it taken")
         centered = is_still and not (is_rgb or is_gray)
@@ -147,7 +148,7 @@ def _rgb(planes: Sequence[NDArray[Any]], rows: NDArray[np.intp], coding: Coding,
     shape = planes[0].shape
     if coding.matrix == "RGB" and len(planes) > 2:
         stored: Float32Array = np.stack([plane[rows] for plane in planes[:3]], axis=2).astype(np.float32)
-        return stored / white
+        return (stored - black) / luma_range
     luma = (planes[0][rows].astype(np.float32) - black) / luma_range
     if len(planes) < 3:
         return np.repeat(luma[..., None], 3, axis=2)

@@ -65,7 +65,7 @@ LAYOUTS = ["nv12", "p010le", "uyvy422", "yuyv422", "yuv411p", "rgb24", "bgra", "
 def test_a_color_in_every_layout(form):
     codes = np.full((16, 32, 3), (200, 100, 50), np.uint8)
     frame = av.VideoFrame.from_ndarray(codes, format="rgb24").reformat(format=form, dst_colorspace=1, dst_color_range=1)
-    frame.colorspace = 0 if frame.format.is_rgb else 1
+    frame.colorspace, frame.color_range = (0, 2) if frame.format.is_rgb else (1, 1)
     coding = Coding.from_frame(frame, is_still=False)
     assert np.abs(rgb_codes(frame, coding, 255).astype(int) - codes).max() <= 2
 
@@ -86,6 +86,16 @@ def test_gray_has_full_range_unless_it_is_tagged(form, color_range, is_full):
     codes = rgb_codes(frame, coding, 65535)[0] / 65535
     np.testing.assert_allclose(codes, np.repeat(expected[:, None], 3, 1), atol=1e-4)
     assert any("range" in each for each in coding.assumptions) == (color_range == 0)
+
+
+@pytest.mark.parametrize("form", ["gbrp", "gbrp10le", "rgb24"])
+def test_rgb_has_limited_range_where_it_is_tagged(form):
+    scale = 4 if "10" in form else 1
+    ramp = np.tile(np.arange(256) * scale, (4, 1))
+    frame = frame_of(form, *([np.repeat(ramp, 3, 1)] if form == "rgb24" else [ramp] * 3), width=256)
+    frame.color_range = 1
+    codes = rgb_codes(frame, Coding.from_frame(frame, is_still=False), 65535)[0] / 65535
+    np.testing.assert_allclose(codes, np.repeat(np.clip((ramp[:1].T / scale - 16) / 219, 0, 1), 3, 1), atol=1e-4)
 
 
 def test_alpha_of_four_planes():
