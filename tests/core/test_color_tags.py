@@ -3,6 +3,7 @@ import struct
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from crfnet_core.colorimetry import (
     ADOBE_RGB,
@@ -223,18 +224,18 @@ class TestFiles:
 
     @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
     def test_exif_is_read(self, tmp_path, space, primaries):
-        tags = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
-        assert (tags.primaries, tags.source) == (primaries, "EXIF" if primaries else "")
+        expected = ColorTags(primaries, source="EXIF" if primaries else "")
+        assert self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space)) == expected
 
     @pytest.mark.parametrize(("index", "primaries"), [("R03", ADOBE_RGB), ("R98", REC709), ("THM", None)])
-    def test_the_interoperability_index_of_dcf_is_read(self, tmp_path, index, primaries):
-        path = write_image(tmp_path / "a.jpg", GRAY)
-        path.write_bytes(with_jpeg_segment(path.read_bytes(), 0xE1, exif_segment(index)))
+    @pytest.mark.parametrize("suffix", ["jpg", "png", "webp", "tif"])
+    def test_the_interoperability_index_of_dcf_is_read(self, tmp_path, index, primaries, suffix):
+        tags = {"tiffinfo": {34665: {40965: {1: index}}}} if suffix == "tif" else {"exif": exif_segment(index)}
+        Image.fromarray(GRAY).save(path := tmp_path / f"a.{suffix}", **tags)
         assert self.tags(path).primaries == primaries
 
     def test_damaged_exif_has_no_tags(self, tmp_path):
-        whole, path = exif_segment("R03"), write_image(tmp_path / "a.jpg", GRAY)
-        content = path.read_bytes()
+        whole, content = exif_segment("R03"), write_image(tmp_path / "a.jpg", GRAY).read_bytes()
         for length in range(0, len(whole) - 8, 3):
             header = read_jpeg_header(with_jpeg_segment(content, 0xE1, whole[:length]))
             assert (header.interop_index, header.has_jfif) == ("", True)

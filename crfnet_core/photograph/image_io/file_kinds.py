@@ -1,10 +1,10 @@
 """Recognize a file's format by its first bytes, and refuse formats that hold no encoded photograph."""
 
-from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.metadata.tiff_tags import tiff_directory
 
 #: How the files that are read begin.
 SIGNATURES = {
@@ -41,8 +41,8 @@ PHOTOGRAPH_SUFFIXES = (
     *(".jpg", ".jpeg", *HEIF_SUFFIXES, ".png", ".tif", ".tiff", ".webp", ".jxl", ".jp2", ".j2k", ".dpx", ".bmp"),
 )
 
-#: Bytes by which a format is known; directories of more entries are damaged.
-_HEAD, _MOST_ENTRIES = 12, 4096
+#: Bytes by which a format is known.
+_HEAD = 12
 
 
 def file_kind(path: Path) -> str:
@@ -85,27 +85,10 @@ def _is_raw(path: Path, head: bytes) -> bool:
         return True
     if not head.startswith(SIGNATURES["TIFF"]):
         return False
-    entries = tiff_directory(path)
+    with path.open("rb") as file:
+        entries = tiff_directory(file)
     is_reduced = bool(entries.get(_SUBFILE_TYPE, 0) & 1)
     return _DNG_VERSION in entries or (is_reduced and _SUB_DIRECTORIES in entries)
-
-
-def tiff_directory(path: Path) -> dict[int, int]:
-    """Return tag -> value, or its place, of a TIFF's first directory; Pillow would load values of any claimed size."""
-    with path.open("rb") as file:
-        head = file.read(16)
-        number = partial(int.from_bytes, byteorder="little" if head.startswith(b"II") else "big")
-        width = 8 if b"+" in head[2:4] else 4  # of places and values: BigTIFF has 8 bytes
-        file.seek(min(number(head[width : 2 * width]), 2**62))
-        count = number(file.read(8 if width == 8 else 2))
-        size = 4 + 2 * width  # of an entry: its tag, its type, the number of values, and the value or its place
-        content = file.read(size * min(count, _MOST_ENTRIES))
-    directory = {}
-    for at in range(0, len(content) - size + 1, size):
-        tag, kind = (number(content[begin : begin + 2]) for begin in (at, at + 2))
-        value = content[at + 4 + width : at + size]
-        directory[tag] = number(value[:2] if kind == 3 else value)  # 3 is SHORT
-    return directory
 
 
 def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:

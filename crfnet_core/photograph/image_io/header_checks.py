@@ -3,6 +3,7 @@
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ import OpenImageIO as oiio
 from PIL import Image
 
 from crfnet_core.errors import PhotoError, one_line
+from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
+from crfnet_core.photograph.metadata.tiff_tags import interop_index
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
@@ -113,7 +116,9 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
     """Return a header with EXIF, XMP and ICC profile, as OpenImageIO reads and names them in a JPEG with them."""
     complete = oiio.ImageSpec(header)
     if exif := info.get("exif"):
-        info = {**info, "exif": (_EXIF_NAME + exif.removeprefix(_EXIF_NAME))[: _MOST_BYTES["exif"] - 1]}
+        exif = exif.removeprefix(_EXIF_NAME)
+        info = {**info, "exif": (_EXIF_NAME + exif)[: _MOST_BYTES["exif"] - 1]}
+        complete.attribute(INTEROP_INDEX, interop_index(BytesIO(exif)))
     fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return complete

@@ -14,13 +14,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.dpx_files import check_dpx
-from crfnet_core.photograph.image_io.file_kinds import (
-    EXTRA_SAMPLES,
-    FILL_ORDER,
-    RAW_SUFFIXES,
-    file_kind,
-    tiff_directory,
-)
+from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, FILL_ORDER, RAW_SUFFIXES, file_kind
 from crfnet_core.photograph.image_io.header_checks import (
     MASK,
     WHITE_IS_ZERO,
@@ -36,6 +30,8 @@ from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, che
 from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
+from crfnet_core.photograph.metadata.tiff_tags import interop_index, tiff_directory
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
 #: Rows read at a time, and pages of a TIFF file that are searched for the largest.
@@ -212,8 +208,14 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
 
 
 def _check_tiff(path: Path, header: Any) -> None:
-    """Refuse deflated bytes whose bits are in reverse order; make no alpha of channels whose use is not stated."""
-    directory = tiff_directory(path)
+    """Refuse deflated bytes whose bits are in reverse order; make no alpha of channels whose use is not stated.
+
+    Add EXIF's InteroperabilityIndex.
+    """
+    with path.open("rb") as file:
+        directory = tiff_directory(file)
+        file.seek(0)
+        header.attribute(INTEROP_INDEX, interop_index(file))
     if directory.get(FILL_ORDER) == 2 and header.get_string_attribute("compression") == "zip":
         raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")
     if header.nchannels > 4 and EXTRA_SAMPLES not in directory:

@@ -12,7 +12,8 @@ from crfnet_core.photograph.metadata.icc import DAMAGED, read_icc
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 
-#: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.
+#: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, in Adobe RGB; and our name of it.
+INTEROP_INDEX = "Exif:InteroperabilityIndex"
 DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 
 #: The parts of a Color Interop Forum name, such as "pq_p3d65_display", that stand for the primaries and the encoding.
@@ -28,12 +29,12 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     """Return the color tags of an open file: the primaries, and the encoding, of the first source that has any.
 
     The ICC profile comes before CICP, in PNG behind it (PNG Specification, third edition, 4.3); damaged, it comes last.
-    OpenImageIO does not read the InteroperabilityIndex of EXIF.
+    OpenImageIO does not read EXIF's InteroperabilityIndex: the readers of files other than JPEG put it there.
     """
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))
     tags = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
-    tags.append(_exif_tags(header, interop_index))
+    tags.append(_exif_tags(header, interop_index or header_attribute(header, INTEROP_INDEX)))
     if file_format == "OpenEXR":
         tags += [_interop_tags(header), _chromaticity_tags(header, "chromaticities")]
     if file_format == "DPX":
@@ -62,10 +63,10 @@ def _png_tags(header: Any) -> tuple[ColorTags, ...]:
     return srgb, _chromaticity_tags(header, "cHRM chunk"), linear
 
 
-def _exif_tags(header: Any, interop_index: str) -> ColorTags:
+def _exif_tags(header: Any, interop_index: str | None) -> ColorTags:
     """Return the tags of EXIF; an uncalibrated picture has none."""
     space = header_attribute(header, "Exif:ColorSpace")
-    primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index)
+    primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index or "")
     return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
 
 

@@ -6,12 +6,12 @@ import struct
 import warnings
 from typing import Any
 
-from PIL import ExifTags
 from PIL.JpegImagePlugin import JpegImageFile
 
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, Table
 from crfnet_core.photograph.metadata.icc import DAMAGED
+from crfnet_core.photograph.metadata.tiff_tags import interop_index
 
 #: The tables of ITU-T T.81, Annex K, which the IJG library scales by a quality. The rest of the second is 99.
 ANNEX_K_LUMA: Table = (
@@ -40,7 +40,6 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of damaged EXIF
             image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
-            interop_index = _interop_index(image)
     except DAMAGE:
         return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
@@ -50,7 +49,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
         chroma_table=tables[1] if len(tables) > 1 else (),
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
-        interop_index=interop_index,
+        interop_index=interop_index(io.BytesIO(image.info.get("exif", b"")[6:])),
         color=ColorTags(source=DAMAGED if any(payload.startswith(_PROFILE) for _, payload in segments) else ""),
         has_gain_map=any(mark in payload for name, payload in segments for mark in _GAIN_MAPS),
     )
@@ -72,12 +71,3 @@ def scaled_table(table: Table, quality: int) -> Table:
 
 #: Table of luma -> quality.
 _QUALITIES = {scaled_table(ANNEX_K_LUMA, quality): quality for quality in range(1, 101)}
-
-
-def _interop_index(image: JpegImageFile) -> str:
-    """Return EXIF's InteroperabilityIndex; empty if there is none, or EXIF is damaged."""
-    try:
-        index = image.getexif().get_ifd(ExifTags.IFD.Interop).get(ExifTags.Interop.InteropIndex, "")
-    except DAMAGE:
-        return ""
-    return index if isinstance(index, str) else ""
