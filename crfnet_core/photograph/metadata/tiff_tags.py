@@ -4,8 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import BinaryIO
 
-#: Tags that lead to EXIF and to the InteroperabilityIndex; the type of a value of two bytes; directories of more entries
-#: are damaged.
+#: Tags that lead to EXIF and to the InteroperabilityIndex; the type of a value of two bytes; the most entries read.
 _EXIF, _INTEROP, _INTEROP_INDEX, _SHORT, _MOST_ENTRIES = 34665, 40965, 1, 3, 4096
 
 
