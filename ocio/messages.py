@@ -5,7 +5,8 @@ from collections.abc import Mapping
 SENTENCES: Mapping[str, str] = {
     # movies
     "dolby_vision": "{path}: is Dolby Vision of profile {profile}, which only its own decoder shows; give one in SDR",
-    "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
+    "frame_undecodable": "{path}: frame {frame} is damaged, or the stream is interrupted there, as where files were"
+    " joined; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_form": "{path}: holds {form}, which are not read here; extract its frames: {line}",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
@@ -56,7 +57,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found code values up to {largest:g}, but the LUT ends at {last:g}: divide them by the largest code",
+    "lut_codes": "found code values up to {largest:g}, but the LUT takes numbers to {last:g}: divide by the largest",
     "lut_comments": "the comments of a LUT are a list or tuple of texts",
     "lut_damaged_since": "{path}: is damaged; run the same again, which estimates its photograph anew",
     "lut_domain": "a LUT needs a finite domain from low to high, found {domain}",
@@ -67,7 +68,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_of_codes": "{path}: the LUT is for code values from {low:g} to {high:g}; write it for brightness from 0 to 1",
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
-    "lut_pixels": "a LUT of R, G and B needs pixels of shape (..., 3), found {shape}",
+    "lut_pixels": "needed are pixels of R, G and B, shape (..., 3), found {shape}; leave alpha out",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",

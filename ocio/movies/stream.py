@@ -42,8 +42,10 @@ if TYPE_CHECKING:
 Entry: TypeAlias = tuple[float, bool]
 
 #: Matrix, range, primaries and transfer: code points of ITU-T H.273, but the range is FFmpeg's; and of none.
+#: And matrices that depend on the transfer function -> FFmpeg's name of the one that is taken if none is stated.
 ColorCodes: TypeAlias = tuple[int, ...]
 UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
+TRANSFERS = {10: "bt2020-10", 14: "smpte2084"}
 
 #: Words of the messages of FFmpeg's demuxers about files that are cut short.
 CUT = ("partial file", "ended prematurely")
@@ -92,10 +94,7 @@ class Picture:
         coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])
         if coding is None:
             form = f"pixels of {frame.format.name}, matrix {codes[0]} of H.273"
-            filters = (
-                ("zscale=matrix=gbr", "format=gbrp16") if codes[0] > UNSPECIFIED[0] else ()
-            )  # else FFmpeg's BT.601
-            raise PlateError("movie_form", path=path, form=form, line=ffmpeg_line(path, *filters))
+            raise PlateError("movie_form", path=path, form=form, line=ffmpeg_line(path, *_filters(frame, codes)))
         turn, tags = _turn(path, frame), cicp_tags(codes[2:])
         return cls(frame.width, frame.height, frame.format.name, coding, turn, frame.interlaced_frame, tags)
 
@@ -274,6 +273,15 @@ def _color_tags(tags: ColorTags, metadata: Mapping[str, str]) -> ColorTags:
     if tags.transfer or not curves:
         return tags
     return replace(tags, transfer=curves[0], transfer_source="the maker's entry")
+
+
+def _filters(frame: VideoFrame, codes: ColorCodes) -> tuple[str, ...]:
+    """Return the filters by which FFmpeg makes RGB of a form that is not read, without taking BT.601."""
+    if codes[0] > UNSPECIFIED[0]:
+        transfer = TRANSFERS.get(codes[0]) if codes[3] == UNSPECIFIED[3] else None
+        stated = (f"setparams=color_primaries=bt2020:color_trc={transfer}",) if transfer else ()
+        return (*stated, "zscale=matrix=gbr", "format=gbrp16")
+    return ("format=rgb24",) if frame.format.is_rgb and bit_depth(frame) < 8 else ()  # else white is 31/32
 
 
 def _turn(path: Path, frame: VideoFrame) -> Turn:

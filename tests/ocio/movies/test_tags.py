@@ -84,12 +84,20 @@ def test_the_container_counts_where_frames_do_not_say_whether_they_hold_two_fiel
     assert read_stream(tmp_path / "a.mov").is_interlaced == is_interlaced
 
 
+#: FFmpeg's filters to constant luminance of BT.2020, which depends on the transfer function, here not stated.
+BT2020_CONSTANT = (
+    "setparams=color_primaries=bt2020:color_trc=bt2020-10,zscale=matrixin=gbr:rangein=full:matrix=2020_cl:range=limited,"
+    "setparams=color_primaries=unknown:color_trc=unknown"
+)
+
+
 @pytest.mark.parametrize(
     ("code", "lines", "filters", "matrix"),
     [
         ("movie_interlaced", 96, "scale=out_color_matrix=bt601,setfield=tff", ""),
         ("movie_interlaced", 720, "scale=out_color_matrix=bt709,setfield=tff", ""),
         ("movie_form", 96, "zscale=matrixin=gbr:rangein=full:matrix=ycgco:range=limited", "ycgco"),
+        ("movie_form", 96, BT2020_CONSTANT, "bt2020c"),
     ],
 )
 def test_the_advised_line_of_ffmpeg_gives_the_colors_of_the_movie(tmp_path, code, lines, filters, matrix):
