@@ -16,8 +16,9 @@ from crfnet_core.types import Float64Array
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
 
-#: The packaged basis.
+#: The packaged basis; and how far from 0 and 1 the ends of responses may lie, as the rounded ones of DoRF do.
 BASIS_FILE = Path(__file__).parents[1] / "data" / "emor.npz"
+SAME_ENDS = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,11 @@ class EmorBasis:
         return cls(mean, components * np.sign(components.sum(axis=1, keepdims=True)))
 
     def project(self, curves: ArrayLike) -> Float64Array:
-        """Return the weights, shape (..., 11), of responses of shape (..., 1024); raise CurveError for others."""
-        return (_rows(curves, SAMPLES) - self.mean) @ self.components.T
+        """Return the weights, shape (..., 11), of responses from 0 to 1, (..., 1024); raise CurveError for others."""
+        rows = _rows(curves, SAMPLES)
+        if np.abs(rows[..., [0, -1]] - (0, 1)).max(initial=0) > SAME_ENDS:
+            raise CurveError("curve_not_strict")
+        return (rows - self.mean) @ self.components.T
 
     def reconstruct(self, weights: ArrayLike) -> Float64Array:
         """Return the responses, shape (..., 1024), of weights of shape (..., 11).

@@ -30,6 +30,12 @@ def test_other_values_are_refused(values, function, length):
             function(EmorBasis.load(), each)
 
 
+@pytest.mark.parametrize("curve", [255 * UNIFORM, np.round(255 * UNIFORM).astype("u1"), 1 - UNIFORM, 0 * UNIFORM])
+def test_curves_that_do_not_run_from_0_to_1_have_no_weights(curve):
+    with pytest.raises(CurveError):
+        EmorBasis.load().project([UNIFORM, curve])
+
+
 def test_a_basis_of_curves_explains_them_in_order():
     rng = np.random.default_rng(2)
     exponents = np.exp(rng.normal(0, 0.4, 40))
