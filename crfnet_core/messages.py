@@ -60,7 +60,7 @@ SENTENCES: Mapping[str, str] = {
     # response
     "curve_rows": "needed are finite numbers in rows of {length}, found shape {shape}",
     "not_numbers": "a response or a LUT needs numbers, found {kind}",
-    "brightness_codes": "found values up to {found:g}, not in [0, 1]: divide code values by the largest code, say 255",
+    "brightness_codes": "found code values, up to {found:.9g}: divide them by the largest code, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
     "curve_exponent": "a gamma must be a number above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",
@@ -75,7 +75,7 @@ SENTENCES: Mapping[str, str] = {
     "array_holds_nan": "{path}: holds NaN; replace it, or leave these rows and columns out",
     "array_is_none": "{path}: is None, which OpenCV's imread returns for a file it cannot read; check its name",
     "array_other_order": "{path}: has {channels} channels, but color_order='{order}'; give the order of all channels",
-    "array_out_of_range": "{path}: holds values from {low:g} to {high:g}; encoded brightness lies in [0, 1]: divide"
+    "array_out_of_range": "{path}: holds values from {low:.9g} to {high:.9g}; encoded brightness lies in [0, 1]: divide"
     " code values by the largest (255 for 8 bits), or clip overshoot; a scene-linear picture holds no camera response",
     "array_sample_type": "{path}: holds {kind}; give uint8, uint16 with its bit_depth, or floating point in [0, 1]"
     " (array.astype converts); read_photo reads files",
@@ -106,7 +106,7 @@ SENTENCES: Mapping[str, str] = {
     " estimated; give the photograph that it was made from",
     "photograph_is_empty": "{path}: the file is empty; copy it again",
     "photograph_is_folder": "{path}: is a folder; give a photograph in it",
-    "photograph_source": "a {kind} is not a path, bytes or a binary file; give one of these",
+    "photograph_source": "a {kind} is not a path, bytes or a binary file; give one of these, as open(path, 'rb')",
     "raw_not_read": "{path}: LibRaw cannot read this {suffix} file ({problem}); convert it to DNG, or copy it again",
     "rawpy_missing": "{path}: camera raw is read by rawpy, and measured with SciPy: pip install 'crfnet[calibrate]'",
     "sample_type": "{path}: holds {bits}-bit {kind} samples; needs 8 to 16 bits, unsigned: convert it",

@@ -89,14 +89,14 @@ class Lut1D(EqualByFields):
 
         Parameters
         ----------
-        pixels : array_like, any shape
-            Inputs in the units of `domain`.
+        pixels : array_like, any shape but (H, W, 4)
+            Inputs in the units of `domain`, without alpha.
 
         Raises
         ------
         LutError
-            If code values are given, which have to be divided: unsigned integers, or integers beyond the domain and
-            above 1; or numbers of which most lie above `MOST_BRIGHTNESS` times its end.
+            If pixels have alpha; if code values are given, which have to be divided: unsigned integers, or integers
+            beyond the domain and above 1; or numbers of which most lie above `MOST_BRIGHTNESS` times its end.
         """
         last = max(self.domain[1], 1)
         inputs = _floating(pixels, last=last)
@@ -230,8 +230,10 @@ def _ends(domain: ArrayLike) -> tuple[float, float]:
 
 
 def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
-    """Return float32 for half and single precision, float64 for everything else; refuse codes beyond `last`."""
+    """Return float32 for half and single precision, float64 for all else; refuse codes beyond `last`, and alpha."""
     numbers = numbers_of(pixels, LutError)
+    if numbers.ndim > 2 and numbers.shape[-1] == 4:  # OpenColorIO leaves alpha as it is
+        raise LutError("lut_pixels", shape=numbers.shape)
     most = -1 if is_codes(numbers) and last < 255 else last
     if numbers.dtype.kind in "iu" and numbers.size and numbers.max() > most:
         raise LutError("lut_codes", largest=int(numbers.max()), last=last)

@@ -160,7 +160,7 @@ def test_memory_is_the_codes_alone(tmp_path):
     assert size < 1.5 * 12e6 * 3 / 1024, "kB"
 
 
-@pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text")])
+@pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text"), io.TextIOWrapper(io.BytesIO(b"\xff\xd8"))])
 def test_other_sources_are_refused(source):
     with refused(PhotoError, "photograph_source"):
         read_photo(source)

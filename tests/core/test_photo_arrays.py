@@ -167,3 +167,9 @@ def test_the_constructor_checks_its_pixels():
         for pixels in refused_pixels:
             with refused(PhotoError, code):
                 Photo(pixels, 8, False, Path("a.png"))
+
+
+def test_a_number_just_above_1_is_named_with_enough_digits():
+    with pytest.raises(PhotoError) as caught:
+        Photo.from_array(np.full((2, 2), 1.0000001, np.float32))
+    assert "1.00000012" in str(caught.value)

@@ -1,5 +1,6 @@
 """Read a photograph's code values, upright and otherwise as stored; or its metadata alone."""
 
+import io
 import os
 import tempfile
 from collections.abc import Iterator
@@ -71,7 +72,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
         return Photo.from_codes(read_codes(path), path)
     name = getattr(source, "name", None)
     path = Path(name) if isinstance(name, str) and name else Path("bytes")
-    content = _content(source, path) if hasattr(source, "read") else source
+    is_binary = hasattr(source, "read") and not isinstance(source, io.TextIOBase)
+    content = _content(source, path) if is_binary else source
     if not isinstance(content, bytes | bytearray | memoryview):
         raise PhotoError("photograph_source", kind=type(source).__name__)
     return Photo.from_codes(read_content(bytes(content), path), path)

@@ -162,6 +162,8 @@ def test_code_values_are_refused(true_response, step):
     for others in ("0.5", [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)):
         with refused(LutError, "not_numbers"):
             step(lut, others)
+    with refused(LutError, "lut_pixels"):  # the last channel is alpha, which OpenColorIO keeps
+        step(lut, np.zeros((2, 3, 4)))
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
 
 
