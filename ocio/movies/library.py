@@ -103,6 +103,7 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
                 megapixels = MOST_PIXELS // 10**6
                 raise PlateError("movie_too_large", path=path, megapixels=megapixels, line=ffmpeg_line(path))
             context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
+            context.flags |= av.codec.context.Flags.unaligned  # else a crop on the left is cut to 16, 32 or 64 columns
             is_hevc = context.codec.canonical_name == "hevc"  # it passes over errors within a frame
             context.options = bounds | ({"err_detect": "crccheck+explode"} if is_hevc else {})
             yield container, stream

@@ -11,7 +11,7 @@ from crfnet.movies.library import is_movie
 from crfnet.movies.source import chosen_photos
 from crfnet.movies.stream import read_stream
 from tests.helpers.images import write_image
-from tests.helpers.movies import pictures, write_movie
+from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 from tests.helpers.refusals import refused
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
@@ -138,3 +138,10 @@ def test_a_pipe_is_not_opened(tmp_path):
         assert not is_movie(tmp_path / "a.avi")
     finally:
         os.close(writer)
+
+
+def test_columns_that_h264_crops_on_the_left_are_left_out(tmp_path):
+    path, target = write_movie(tmp_path / "a.mp4", 1), tmp_path / "b.mp4"
+    run_ffmpeg("-i", path, "-c", "copy", "-bsf:v", "h264_metadata=crop_left=16:crop_right=6", target)
+    whole, cropped = (next(MovieFrames.find(each).loaders([0]))().samples for each in (path, target))
+    np.testing.assert_array_equal(cropped[:, :-1], whole[:, 16:-7])  # the last chroma sample has no neighbor
