@@ -147,7 +147,7 @@ class TestIccProfiles:
             (b"curv" + struct.pack(">II2H", 0, 2, 2000, 65535), "linear"),  # a lifted black
             (b"curv" + struct.pack(">II2H", 0, 2, 65535, 65535), ""),  # no range
             (b"curv" + struct.pack(">II2H", 0, 2, 65535, 0), "a negative"),
-            (b"curv" + struct.pack(">IIH", 0, 1, round(1.1 * 256)), ""),
+            (b"curv" + struct.pack(">IIH", 0, 1, round(1.1 * 256)), "nearly linear"),
             (b"para" + struct.pack(">IHHi", 0, 0, 0, 65536), "linear"),
             (b"para" + struct.pack(">IHHi", 0, 0, 0, round(1.8 * 65536)), ""),
         ],

@@ -37,6 +37,9 @@ _RAMP, LEAST_LIGHTNESS = np.arange(1, 256, dtype=np.uint8), 30
 #: Largest difference in L* between the ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
 SAME_LIGHTNESS = 1.5
 
+#: Least exponent of a display's curve: 1.8 occur, and 1 is linear.
+LEAST_POWER = 1.3
+
 #: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped; and the least
 #: number of codes there.
 _COMPARED, LEAST_COMPARED = (8, 98.5), 70
@@ -112,7 +115,9 @@ def _encoding(profile: ImageCms.ImageCmsProfile, mode: str, named: str, *, is_ex
         return "three channels of different curves"
     if _is_linear(lightness):
         return "linear"
-    return _published(3 * np.log2((lightness + 16) / 116), is_compared, named)
+    stops = 3 * np.log2((lightness + 16) / 116)
+    is_display = not is_exact or stops[len(_RAMP) // 2] < -LEAST_POWER  # half the code is a stop of a linear curve
+    return _published(stops, is_compared, named) or ("" if is_display else "nearly linear")
 
 
 def _is_colored(colors: NDArray[np.uint8]) -> bool:
