@@ -16,12 +16,7 @@ from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from .frame_pattern import FramePattern, listed
 
 #: Kind of a name that is not a pattern -> the code of the error that it stands for no frames; see `_kind`.
-_NO_SEQUENCE = {
-    "folder": "folder_without_sequence",
-    "file": "single_file",
-    "pipe": "not_a_file",
-    "": "no_such_plate",
-}
+_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "pipe": "not_a_file", "": "no_such_plate"}
 
 
 @dataclass(frozen=True)

@@ -16,16 +16,10 @@ from crfnet_core.photograph.metadata.tiff_tags import interop_index
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *(
-        "support is not configured",
-        "is not implemented",
-        "not supported",
-        "nsupported",
-        "could not find a format reader",
-    ),
-    *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
-    *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
-    "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
+    *("support is not configured", "is not implemented", "nsupported", "could not find a format reader"),
+    *("not supported", "No support for", "Invalid bits per sample"),  # TIFF in Lab, of JPEG with 12 bits
+    *("Invalid sampleformat", "components are supported"),  # TIFF of 9 bits; JPEG 2000 of gray and alpha
+    *("exceeds limit", "JxlDecoderImageOutBufferSize failed"),  # Pillow's of WebP; JPEG XL with spot colors, or CMYK
 )
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.

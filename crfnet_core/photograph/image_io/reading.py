@@ -216,7 +216,6 @@ def _check_tiff(path: Path, header: Any) -> None:
     """
     with path.open("rb") as file:
         directory = tiff_directory(file)
-        file.seek(0)
         header.attribute(INTEROP_INDEX, interop_index(file))
     if directory.get(FILL_ORDER) == 2 and header.get_string_attribute("compression") == "zip":
         raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")

@@ -10,6 +10,7 @@ _EXIF, _INTEROP, _INTEROP_INDEX, _SHORT, _MOST_ENTRIES = 34665, 40965, 1, 3, 409
 
 def tiff_directory(file: BinaryIO, *tags: int) -> dict[int, int]:
     """Return tag -> value, or its place, of the first directory of TIFF or EXIF, or of that where `tags` lead."""
+    file.seek(0)
     head = file.read(16)
     number = partial(int.from_bytes, byteorder="little" if head.startswith(b"II") else "big")
     width = 8 if b"+" in head[2:4] else 4  # of places and values: BigTIFF has 8 bytes
@@ -21,10 +22,9 @@ def tiff_directory(file: BinaryIO, *tags: int) -> dict[int, int]:
 
 def interop_index(file: BinaryIO) -> str:
     """Return the InteroperabilityIndex of EXIF or a TIFF file, such as "R98"; empty if it is absent or damaged."""
-    is_little = file.read(2) == b"II"
-    file.seek(0)
     index = tiff_directory(file, _EXIF, _INTEROP).get(_INTEROP_INDEX, 0)
-    text = index.to_bytes(8, "little" if is_little else "big").strip(b"\0").decode("latin-1")
+    file.seek(0)
+    text = index.to_bytes(8, "little" if file.read(2) == b"II" else "big").strip(b"\0").decode("latin-1")
     return text if text.isalnum() else ""
 
 
