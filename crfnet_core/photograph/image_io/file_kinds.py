@@ -41,8 +41,7 @@ PHOTOGRAPH_SUFFIXES = (
     *(".jpg", ".jpeg", *HEIF_SUFFIXES, ".png", ".tif", ".tiff", ".webp", ".jxl", ".jp2", ".j2k", ".dpx", ".bmp"),
 )
 
-#: Bytes by which a format is known.
-_HEAD = 12
+_HEAD = 12  # bytes by which a format is known
 
 
 def file_kind(path: Path) -> str:

@@ -210,10 +210,7 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
 
 
 def _check_tiff(path: Path, header: Any) -> None:
-    """Refuse deflated bytes whose bits are in reverse order; make no alpha of channels whose use is not stated.
-
-    Add EXIF's InteroperabilityIndex.
-    """
+    """Refuse deflated bytes of reversed bits; make no alpha of channels of unstated use; add the index of EXIF."""
     with path.open("rb") as file:
         directory = tiff_directory(file)
         header.attribute(INTEROP_INDEX, interop_index(file))

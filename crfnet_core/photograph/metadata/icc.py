@@ -34,11 +34,9 @@ PCS_WHITE, SAME_WHITE = np.array([0.9642, 1.0, 0.8249]), 0.02
 #: The codes of a gray ramp, and the least range of its L*; a damaged profile may make it flat.
 _RAMP, LEAST_LIGHTNESS = np.arange(1, 256, dtype=np.uint8), 30
 
-#: Largest difference in L* between the ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
-SAME_LIGHTNESS = 1.5
-
-#: Least exponent of a display's curve: 1.8 occur, and 1 is linear.
-LEAST_POWER = 1.3
+#: Largest difference in L* between the ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23. And the
+#: least exponent of a display's curve: 1.8 occurs.
+SAME_LIGHTNESS, LEAST_POWER = 1.5, 1.3
 
 #: Lightness between which a curve is compared: below, 8 bits are too coarse, and above it may be clipped; and the least
 #: number of codes there.
