@@ -57,7 +57,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found code values up to {largest:g}, but the LUT takes numbers to {last:g}: divide by the largest",
+    "lut_codes": "found code values, up to {largest:g}: divide them by the largest code; the LUT ends at {last:g}",
     "lut_comments": "the comments of a LUT are a list or tuple of texts",
     "lut_damaged_since": "{path}: is damaged; run the same again, which estimates its photograph anew",
     "lut_domain": "a LUT needs a finite domain from low to high, found {domain}",

@@ -113,6 +113,15 @@ def test_the_advised_line_of_ffmpeg_gives_the_colors_of_the_movie(tmp_path, code
     assert np.abs(read_image(tmp_path / "a.0001.png") - picture / 255).mean() < 0.01
 
 
+def test_white_of_five_bits_stays_white_by_the_advised_line_of_ffmpeg(tmp_path):
+    write_image(tmp_path / "a.png", np.full((96, 128, 3), 255, np.uint8))
+    run_ffmpeg("-i", tmp_path / "a.png", "-c:v", "rawvideo", "-pix_fmt", "rgb555le", tmp_path / "a.nut")
+    with pytest.raises(PlateError) as caught:
+        read_stream(tmp_path / "a.nut")
+    run_ffmpeg(*shlex.split(caught.value.facts["line"])[1:])
+    assert read_image(tmp_path / "a.0001.png").min() > 0.99
+
+
 @pytest.mark.parametrize(("codec", "form", "is_named"), [("libvpx-vp9", "yuv420p", True), ("ffv1", "yuva420p", False)])
 def test_alpha_that_is_not_decoded_is_named(tmp_path, codec, form, is_named):
     movie = read_stream(write_movie(tmp_path / "a.mkv", codec=codec, form=form, metadata={"alpha_mode": "1"}))
