@@ -13,13 +13,8 @@ from crfnet_core.errors import PhotoError, one_line
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *(
-        "support is not configured",
-        "is not implemented",
-        "not supported",
-        "nsupported",
-        "could not find a format reader",
-    ),
+    *("support is not configured", "is not implemented", "not supported", "nsupported"),
+    "could not find a format reader",
     *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
     *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
@@ -38,9 +33,6 @@ OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*
 #: JPEG, which other formats may or may not have.
 _MOST_BYTES, _EXIF_NAME = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}, b"Exif\0\0"
 
-#: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
-LINEAR_JXL_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
-
 
 def check_size(path: Path, width: int, height: int) -> None:
     """Refuse a picture of more than `MAX_PIXELS`."""
@@ -54,8 +46,6 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:
         raise PhotoError("volume", path=path)
-    if kind == "JPEG XL" and text_attribute(header, "ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
-        raise PhotoError("jxl_linear", path=path)
     _check_color(path, header, kind)
     sample = str(header.format)
     if sample in ("half", "float", "double"):
