@@ -184,3 +184,4 @@ def test_name_that_is_not_utf8(tmp_path):
     with pytest.raises(PhotoError) as caught:
         read_photo(os.fsdecode(path))
     assert (caught.value.code, str(caught.value).isprintable()) == ("name_not_utf8", True)
+    assert "'" not in str(caught.value.facts["path"])

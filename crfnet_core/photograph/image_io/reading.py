@@ -172,7 +172,8 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
             with _opened_kind(path, kind) as file:
                 yield file
     except UnicodeEncodeError as problem:
-        raise PhotoError("name_not_utf8", path=ascii(str(path))) from problem
+        name = str(path).encode(errors="backslashreplace").decode()  # as the command prints such names
+        raise PhotoError("name_not_utf8", path=name) from problem
     except OSError as problem:
         raise PhotoError("cannot_open_photograph", path=path, problem=problem.strerror) from problem
 
