@@ -14,7 +14,8 @@ from crfnet_core.errors import PhotoError, one_line
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
     *("support is not configured", "is not implemented", "not supported", "nsupported"),
-    "could not find a format reader",
+    *("could not find a format reader", "unhandled critical chunk"),  # PNG of Apple's Xcode
+    *("not been built in", "Missing or empty image item"),  # HEIF with other codings, and AVIF of items made of others
     *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
     *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK

@@ -84,6 +84,8 @@ def _opened_heif(path: Path, kind: str) -> Any:
 
     with suppress(*_DAMAGE if kind == "AVIF" else ()):
         main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
+        if not len(main):
+            raise ValueError("its items are not supported by libheif")
         check_size(path, *main.size)
         return main
     return None

@@ -129,6 +129,25 @@ def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
         read_photo(tmp_path / "a.heic")
 
 
+@pytest.mark.parametrize(
+    ("name", "stored", "other"),
+    [
+        ("a.heic", b"hvc1", b"jpeg"),
+        ("a.avif", b"av01", b"iden"),
+        ("a.png", b"\0\0\0\rIHDR", b"\0\0\0\4CgBIP\0 \2+\xd5\xb3\x7f\0\0\0\rIHDR"),
+    ],
+)
+def test_a_coding_that_the_decoder_lacks_is_not_called_damage(heif, tmp_path, name, stored, other):
+    """HEIF of JPEG, AVIF with an item derived from others, PNG of Apple's Xcode."""
+    content = (heif / "rgb8.heic").read_bytes()
+    if name != "a.heic":
+        Image.fromarray(colored_ramp(8)).save(tmp_path / name)
+        content = (tmp_path / name).read_bytes()
+    (tmp_path / name).write_bytes(content.replace(stored, other, 1))
+    with refused(PhotoError, "coding_not_read"):
+        read_photo(tmp_path / name)
+
+
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
     monkeypatch.setattr("crfnet_core.photograph.image_io.header_checks.MAX_PIXELS", 64 * 48 - 1)
     monkeypatch.setattr("crfnet_core.photograph.image_io.pillow_files._heic", None)
