@@ -36,6 +36,8 @@ def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
     np.testing.assert_array_equal(values.codes, np.rot90(colored_ramp(8), -1))
     assert values.header.get_int_attribute("Orientation") == 1
     assert (values.header.width, values.header.height) == (48, 64)
+    assert values.metadata.is_turned
+    assert not read_photo(heif / "rgb8.heic").metadata.is_turned
 
 
 def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
