@@ -42,7 +42,7 @@ def check_size(path: Path, width: int, height: int) -> None:
 
 
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
-    """Return the bits per sample, 8, 10, 12 or 16, of an encoded photograph; raise PhotoError for any other file."""
+    """Return the bits per sample, 8, 10, 12, 14 or 16, of an encoded photograph; raise PhotoError for any other file."""
     check_size(path, header.width, header.height)
     check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:
@@ -55,7 +55,7 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     bits = min(header.get_int_attribute("oiio:BitsPerSample", stored), stored)  # XMP may claim more
     if sample not in ("uint8", "uint16") or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
-    return bits if bits in (8, 10, 12) else 16
+    return bits if bits in (8, 10, 12, 14) else 16
 
 
 def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:

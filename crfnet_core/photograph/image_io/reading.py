@@ -128,7 +128,7 @@ class _OpenFile:
         if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO:
             wrong = np.s_[..., :1] if bit_depth > 8 else np.s_[..., 1:]  # OpenImageIO inverts all samples of 8 bits
             values[wrong] = ~values[wrong]
-        if bit_depth in (10, 12):
+        if 8 < bit_depth < 16:
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
         header = self._upright_header()
         if self.kind in UNSTATED_ALPHA_KINDS and header.alpha_channel > 0:

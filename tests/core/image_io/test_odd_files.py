@@ -26,6 +26,16 @@ def test_white_is_zero_but_alpha_is_not_inverted(tmp_path, bits):
     np.testing.assert_array_equal(values.alpha, codes[..., 1])
 
 
+@pytest.mark.parametrize("bits", [10, 12, 14])
+def test_packed_codes_of_tiff_keep_their_bits(tmp_path, bits):
+    codes = np.array([0, 1, 777, 2 ** (bits - 1), 2**bits - 2, 2**bits - 1, 5, 6])
+    packed = int("".join(f"{code:0{bits}b}" for code in codes), 2).to_bytes(bits)
+    (tmp_path / "a.tif").write_bytes(tiff(8, 1, samples=1, photometric=1, bits=bits, content=packed))
+    values = read_codes(tmp_path / "a.tif")
+    assert values.bit_depth == bits
+    np.testing.assert_array_equal(values.codes[0, :, 0], codes)
+
+
 @pytest.mark.parametrize(("photometric", "colors"), [(2, [0, 1, 2]), (1, [0, 0, 0])])
 def test_channels_of_unknown_use_are_neither_colors_nor_alpha(tmp_path, photometric, colors):
     codes = np.arange(20, dtype=np.uint8).reshape(2, 2, 5)
