@@ -125,17 +125,14 @@ def linearize_plates(
 
 @dataclass(frozen=True, eq=False)
 class _Conversion:
-    """The facts that all frames share: the meaning of their light, the factor of the exposure, the options.
-
-    `clipped` is the share of values outside the LUT's domain in each file written.
-    """
+    """The facts that all frames share, such as the meaning of their light and the factor of the exposure."""
 
     light: PlateLight
     scale: float
     options: PlateOptions
     first: FirstFrame | None
     plate_of: Callable[[int], str]
-    clipped: dict[Path, float] = field(default_factory=dict)
+    clipped: dict[Path, float] = field(default_factory=dict)  # the share outside the LUT, of each file written
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
@@ -251,12 +248,7 @@ def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequ
     if not sequence.numbers:
         return first
     numbers = format_frames([n for n, target in zip(sequence.numbers, targets, strict=True) if target in failures])
-    facts = {
-        "count": len(failed),
-        "total": len(targets),
-        "frames": numbers,
-        "others": " and the others are written" if len(failed) < len(targets) else "",
-        "gaps": f"; missing are {format_frames(sequence.missing)}" if sequence.missing else "",
-        "first": first,
-    }
-    return PlateError("frames_failed", **facts)
+    others = " and the others are written" if len(failed) < len(targets) else ""
+    gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
+    facts = {"count": len(failed), "total": len(targets), "frames": numbers, "others": others, "gaps": gaps}
+    return PlateError("frames_failed", **facts, first=first)

@@ -27,21 +27,21 @@ def check_dpx(path: Path, header: Any) -> None:
     bits, samples = header.get_int_attribute("oiio:BitsPerSample"), header.nchannels * header.width
     sizes = {8: samples, 10: -(-samples // 3) * 4}  # three samples of 10 bits fill a word of 32
     line = -(-samples * bits // 32) * 4 if bits in (10, 12) and packing == 0 else sizes.get(bits, 2 * samples)
-    problem = ""
-    if header.get_int_attribute("Orientation", 1) > 4:  # OpenImageIO takes their length for another
-        problem = "lines from top to bottom"
-    elif descriptor not in _READ or (elements > 1 and descriptor not in _RGB):  # it reads the first element alone
-        problem = f"{elements} elements, the first of descriptor {descriptor}"
-    elif any(encoding):
-        problem = "runs"
-    elif place in _NO_PLACES:
-        problem = "its header does not state where the pixels are"
-    elif bits == 10 and packing and samples % 3:  # it takes the last samples from elsewhere
-        problem = "lines of 10 bits that end within a word"
-    elif line % 4 and stored == (line + -line % 4) * header.height:
-        problem = (
-            "" if header.get_int_attribute("dpx:EndOfLinePadding") else "padded lines that its header does not name"
-        )
+    is_padded = line % 4 and stored == (line + -line % 4) * header.height
+    problems = {
+        "lines from top to bottom": header.get_int_attribute("Orientation", 1) > 4,  # taken for lines of another length
+        f"{elements} elements, the first of descriptor {descriptor}": (  # the first one alone is read
+            descriptor not in _READ or (elements > 1 and descriptor not in _RGB)
+        ),
+        "runs": any(encoding),
+        "its header does not state where the pixels are": place in _NO_PLACES,
+        "lines of 10 bits that end within a word": bits == 10
+        and packing
+        and samples % 3,  # whose last samples are lost
+        "padded lines that its header does not name": is_padded
+        and not header.get_int_attribute("dpx:EndOfLinePadding"),
+    }
+    problem = next((words for words, is_so in problems.items() if is_so), "")
     if problem:
         raise PhotoError("coding_not_read", path=path, kind="DPX", problem=problem)
     if stored < line * header.height:  # which OpenImageIO before version 3.2 reads nevertheless

@@ -13,8 +13,8 @@ from crfnet_core.errors import PhotoError, one_line
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *("support is not configured", "is not implemented", "not supported", "nsupported"),
-    *("could not find a format reader", "unhandled critical chunk"),  # PNG of Apple's Xcode
+    *("support is not configured", "is not implemented", "not supported", "nsupported", "find a format reader"),
+    "unhandled critical chunk",  # PNG of Apple's Xcode
     *("not been built in", "Missing or empty image item"),  # HEIF with other codings, and AVIF of items made of others
     *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
     *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
@@ -42,7 +42,7 @@ def check_size(path: Path, width: int, height: int) -> None:
 
 
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
-    """Return the bits per sample, 8, 10, 12, 14 or 16, of an encoded photograph; raise PhotoError for any other file."""
+    """Return the bits per sample, 8, 10, 12, 14 or 16, of an encoded photograph; refuse any other file."""
     check_size(path, header.width, header.height)
     check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:

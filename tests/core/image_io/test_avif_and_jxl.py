@@ -124,9 +124,8 @@ def test_an_animation_of_jpeg_xl_is_refused(tmp_path, head):
     """OpenImageIO would return its last frame. The bits: small sides, fields that are not the default, an animation."""
     fields = 1 | 3 << 1 | 1 << 6 | 1 << 10 | 1 << 16
     (tmp_path / "a.jxl").write_bytes(head + b"\xff\x0a" + fields.to_bytes(86, "little"))
-    for read in (read_codes, read_metadata):
-        with refused(PhotoError, "coding_not_read", problem="an animation"):
-            read(tmp_path / "a.jxl")
+    with refused(PhotoError, "coding_not_read", problem="an animation"):
+        read_codes(tmp_path / "a.jxl")
 
 
 def test_jpeg_xl_of_10_bits_is_turned_upright_says_so_and_keeps_its_bits(tmp_path):

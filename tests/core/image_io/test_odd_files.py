@@ -32,8 +32,7 @@ def test_packed_codes_of_tiff_keep_their_bits(tmp_path, bits):
     packed = int("".join(f"{code:0{bits}b}" for code in codes), 2).to_bytes(bits)
     (tmp_path / "a.tif").write_bytes(tiff(8, 1, samples=1, photometric=1, bits=bits, content=packed))
     values = read_codes(tmp_path / "a.tif")
-    assert values.bit_depth == bits
-    np.testing.assert_array_equal(values.codes[0, :, 0], codes)
+    assert (values.bit_depth, values.codes[0, :, 0].tolist()) == (bits, codes.tolist())
 
 
 @pytest.mark.parametrize(("photometric", "colors"), [(2, [0, 1, 2]), (1, [0, 0, 0])])
@@ -153,9 +152,8 @@ def test_dpx_that_openimageio_misreads_is_refused(tmp_path, orientation, element
 @pytest.mark.parametrize("place", [0, 2**32 - 1])
 def test_dpx_that_does_not_state_where_its_pixels_are_is_refused_as_a_coding(tmp_path, place):
     path = write_image(tmp_path / "a.dpx", np.zeros((16, 24, 3), np.uint8))
-    content = bytearray(path.read_bytes())
-    content[808:812] = struct.pack("=I", place)
-    path.write_bytes(content)
+    content = path.read_bytes()
+    path.write_bytes(content[:808] + struct.pack("=I", place) + content[812:])
     with refused(PhotoError, "coding_not_read"):
         read_codes(path)
 
