@@ -12,8 +12,8 @@ from crfnet_core.photograph.image_io.header_checks import damaged
 _RGB = (50, 51, 52)
 _READ = (1, 2, 3, 6, *_RGB)
 
-#: Places of the pixels that stand for none.
-_NO_PLACES = (0, 2**32 - 1)
+#: Places of the pixels that stand for none; OpenImageIO's name of the bytes behind each line.
+_NO_PLACES, _PADDING = (0, 2**32 - 1), "dpx:EndOfLinePadding"
 
 
 def check_dpx(path: Path, header: Any) -> None:
@@ -28,18 +28,14 @@ def check_dpx(path: Path, header: Any) -> None:
     sizes = {8: samples, 10: -(-samples // 3) * 4}  # three samples of 10 bits fill a word of 32
     line = -(-samples * bits // 32) * 4 if bits in (10, 12) and packing == 0 else sizes.get(bits, 2 * samples)
     is_padded = line % 4 and stored == (line + -line % 4) * header.height
+    has_read_element = descriptor in (_RGB if elements > 1 else _READ)  # the first one alone is read
     problems = {
         "lines from top to bottom": header.get_int_attribute("Orientation", 1) > 4,  # taken for lines of another length
-        f"{elements} elements, the first of descriptor {descriptor}": (  # the first one alone is read
-            descriptor not in _READ or (elements > 1 and descriptor not in _RGB)
-        ),
+        f"{elements} elements, the first of descriptor {descriptor}": not has_read_element,
         "runs": any(encoding),
         "its header does not state where the pixels are": place in _NO_PLACES,
-        "lines of 10 bits that end within a word": bits == 10
-        and packing
-        and samples % 3,  # whose last samples are lost
-        "padded lines that its header does not name": is_padded
-        and not header.get_int_attribute("dpx:EndOfLinePadding"),
+        "lines of 10 bits that end within a word": bits == 10 and packing and samples % 3,
+        "padded lines that its header does not name": is_padded and not header.get_int_attribute(_PADDING),
     }
     problem = next((words for words, is_so in problems.items() if is_so), "")
     if problem:
