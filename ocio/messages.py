@@ -32,7 +32,7 @@ SENTENCES: Mapping[str, str] = {
     "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
     "finished_outdated": "{path}: is of another plate, or older than its plate{more}; delete it, or write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or one like plate.####.png",
-    "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
+    "frames_failed": "{count} of {total} frames failed ({frames}){others}{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
     "no_placeholder": "{path}: is one name for {count} frames; give a name with a placeholder, such as plate.%04d.exr",
     "no_such_frames": "{path}: frames that exist: {frames}; check the name and the frames",

@@ -130,7 +130,7 @@ class CodeValues:
 
     codes: CodeArray  # shape (H, W, 3), 0 to 2 ** bit_depth - 1
     alpha: CodeArray | None  # coverage, shape (H, W), on the same scale
-    bit_depth: int  # bits per sample of the file: 8, 10, 12 or 16
+    bit_depth: int  # bits per sample of the file: 8, 10, 12, 14 or 16
     is_associated: bool  # whether the file stores its codes multiplied by alpha
     header: Any  # an OpenImageIO.ImageSpec, with all that OpenImageIO read
     metadata: FileMetadata

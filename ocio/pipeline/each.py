@@ -120,7 +120,8 @@ class LinearBatch(Batch):
         with output_folder(targets[0].parent):
             written = linearize_plates(photograph, targets, lut, self.plates, workers=1)
         record = task.record(written.light, estimate, linear=targets)
-        return replace(record, left_alone=bool(written.skipped))
+        clipped = f", {100 * written.clipped:.2g} % of the values clipped" if written.clipped else ""
+        return replace(record, left_alone=bool(written.skipped), summary=record.summary + clipped)
 
     def _estimated(self, photograph: FrameSequence) -> tuple[AnyLut, ResponseEstimate]:
         """Return the response estimated from a photograph."""

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -48,6 +48,7 @@ class PlateReport:
     skipped: tuple[Path, ...]
     missing: tuple[int, ...]
     light: PlateLight
+    clipped: float  # the share of the encoded values that were outside the LUT's domain, in the files written
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
@@ -118,18 +119,20 @@ def linearize_plates(
         raise _failure(failures, targets, sequence)
     check_finished(((target, plate_of(pending[target])) for target in elsewhere), light, options.depth)
     written = tuple(target for target in pending if target not in elsewhere)
-    return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
+    clipped = float(np.mean([*conversion.clipped.values()] or [0.0]))
+    return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light, clipped)
 
 
 @dataclass(frozen=True, eq=False)
 class _Conversion:
-    """The facts that all frames share: the meaning of their light, the factor of the exposure, the options."""
+    """The facts that all frames share, such as the meaning of their light and the factor of the exposure."""
 
     light: PlateLight
     scale: float
     options: PlateOptions
     first: FirstFrame | None
     plate_of: Callable[[int], str]
+    clipped: dict[Path, float] = field(default_factory=dict)  # the share outside the LUT, of each file written
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
@@ -139,6 +142,9 @@ class _Conversion:
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
+        low, high = self.light.lut.domain
+        is_coded = frame.samples.dtype.kind == "u"
+        self.clipped[target] = 0.0 if is_coded else float(np.mean((frame.samples < low) | (frame.samples > high)))
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:
         """Return a plate, which must have the primaries and the transfer function of the first."""
@@ -242,5 +248,7 @@ def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequ
     if not sequence.numbers:
         return first
     numbers = format_frames([n for n, target in zip(sequence.numbers, targets, strict=True) if target in failures])
+    others = " and the others are written" if len(failed) < len(targets) else ""
     gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
-    return PlateError("frames_failed", count=len(failed), total=len(targets), frames=numbers, gaps=gaps, first=first)
+    facts = {"count": len(failed), "total": len(targets), "frames": numbers, "others": others, "gaps": gaps}
+    return PlateError("frames_failed", **facts, first=first)

@@ -44,6 +44,7 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
         "written": [str(path) for path in report.written],
         "skipped": [str(path) for path in report.skipped],
         "missing": list(report.missing),
+        "clipped": rounded(report.clipped),
         **_light_document(report.light),
         "tagged": report.light.tagged or None,
         "estimate": estimate.to_dict() if estimate else None,

@@ -96,8 +96,10 @@ def light_lines(document: Mapping[str, Any]) -> list[str]:
 
 
 def plate_lines(report: PlateReport) -> list[str]:
-    """Return which frames were written, left alone or missing, one line each."""
+    """Return how much was clipped, and which frames were written, left alone or missing, one line each."""
     lines = []
+    if report.clipped:
+        lines.append(f"Warning: {100 * report.clipped:.2g} % of the values are outside the LUT and were clipped.")
     if report.written:
         lines.append(f"Written: {_first_and_last(report.written)}.")
     if report.skipped:

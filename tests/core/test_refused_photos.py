@@ -60,7 +60,7 @@ FILES = [
     ("mosaic.tif", tiff(2, 2, samples=1, photometric=32803, content=bytes(4)), "camera_raw"),
     ("cr2.tif", b"II*\0" + struct.pack("<I", 20) + b"CR\2\0" + bytes(40), "camera_raw"),
     ("dng.tif", tiff(2, 2, extra=((50706, 1, 0x0401),), content=bytes(12)), "camera_raw"),
-    ("preview.tif", tiff(2, 2, extra=((254, 4, 1), (330, 4, 8)), content=bytes(12)), "camera_raw"),
+    ("preview.tif", tiff(2, 2, extra=((254, 4, 1), (330, 4, 8)), content=bytes(12)), "coding_not_read"),
     ("raf.tif", b"FUJIFILMCCD-RAW 0201" + bytes(80), "camera_raw"),
     ("cr3.tif", b"\0\0\0\x18ftypcrx \0\0\0\x01crx isom" + bytes(80), "camera_raw"),
     ("cmyk.tif", tiff(2, 2, samples=4, photometric=5, content=bytes(16)), "other_colors"),
@@ -184,3 +184,4 @@ def test_name_that_is_not_utf8(tmp_path):
     with pytest.raises(PhotoError) as caught:
         read_photo(os.fsdecode(path))
     assert (caught.value.code, str(caught.value).isprintable()) == ("name_not_utf8", True)
+    assert "'" not in str(caught.value.facts["path"])

@@ -8,6 +8,7 @@ iso_boxes        the boxes that HEIF, JPEG 2000 and JPEG XL are made of
 heif_items       HEIF: the items in these boxes, and how often they are decoded
 dpx_files        DPX: codings that OpenImageIO misreads, and missing ends
 jp2_files        JPEG 2000: codings that OpenImageIO misreads, associated alpha, tags of color
+jxl_files        JPEG XL: animations, linear light, and metadata in boxes
 png_files        PNG: the chunks of color
 pillow_files     HEIC, AVIF, BMP and WebP, which OpenImageIO's wheel does not read, or not all of
 """

@@ -79,15 +79,17 @@ def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
 
 
 def _is_raw(path: Path, head: bytes) -> bool:
-    """Return whether a file is camera raw, whatever its name: also TIFF that says so, or has larger pictures below."""
+    """Return whether a file is camera raw, whatever its name; refuse TIFF that may be, as its picture is elsewhere."""
     if head.startswith(RAW_SIGNATURES) or (head[8:10] == b"CR" and head.startswith((b"II*\0", b"MM\0*"))):
         return True
     if not head.startswith(SIGNATURES["TIFF"]):
         return False
     with path.open("rb") as file:
         entries = tiff_directory(file)
-    is_reduced = bool(entries.get(_SUBFILE_TYPE, 0) & 1)
-    return _DNG_VERSION in entries or (is_reduced and _SUB_DIRECTORIES in entries)
+    if _DNG_VERSION not in entries and entries.get(_SUBFILE_TYPE, 0) & 1 and _SUB_DIRECTORIES in entries:
+        problem = "its first page is a thumbnail, and the picture below it, in a SubIFD, may be camera raw"
+        raise PhotoError("coding_not_read", path=path, kind="TIFF", problem=problem)
+    return _DNG_VERSION in entries
 
 
 def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:

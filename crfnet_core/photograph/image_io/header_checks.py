@@ -16,10 +16,12 @@ from crfnet_core.photograph.metadata.tiff_tags import interop_index
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
-    *("support is not configured", "is not implemented", "nsupported", "could not find a format reader"),
-    *("not supported", "No support for", "Invalid bits per sample"),  # TIFF in Lab, of JPEG with 12 bits
-    *("Invalid sampleformat", "components are supported"),  # TIFF of 9 bits; JPEG 2000 of gray and alpha
-    *("exceeds limit", "JxlDecoderImageOutBufferSize failed"),  # Pillow's of WebP; JPEG XL with spot colors, or CMYK
+    *("support is not configured", "is not implemented", "not supported", "nsupported", "find a format reader"),
+    "unhandled critical chunk",  # PNG of Apple's Xcode
+    *("not been built in", "Missing or empty image item"),  # HEIF with other codings, and AVIF of items made of others
+    *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
+    *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
+    "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
@@ -35,9 +37,6 @@ OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*
 #: JPEG, which other formats may or may not have.
 _MOST_BYTES, _EXIF_NAME = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}, b"Exif\0\0"
 
-#: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
-LINEAR_JXL_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
-
 
 def check_size(path: Path, width: int, height: int) -> None:
     """Refuse a picture of more than `MAX_PIXELS`."""
@@ -46,13 +45,11 @@ def check_size(path: Path, width: int, height: int) -> None:
 
 
 def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
-    """Return the bits per sample, 8, 10, 12 or 16, of an encoded photograph; raise PhotoError for any other file."""
+    """Return the bits per sample, 8, 10, 12, 14 or 16, of an encoded photograph; refuse any other file."""
     check_size(path, header.width, header.height)
     check_size(path, header.tile_width, header.tile_height)  # a tile is decoded as a whole
     if header.depth != 1:
         raise PhotoError("volume", path=path)
-    if kind == "JPEG XL" and text_attribute(header, "ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
-        raise PhotoError("jxl_linear", path=path)
     _check_color(path, header, kind)
     sample = str(header.format)
     if sample in ("half", "float", "double"):
@@ -61,7 +58,7 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     bits = min(header.get_int_attribute("oiio:BitsPerSample", stored), stored)  # XMP may claim more
     if sample not in ("uint8", "uint16") or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
-    return bits if bits in (8, 10, 12) else 16
+    return bits if bits in (8, 10, 12, 14) else 16
 
 
 def attributes_of(header: Any) -> Iterator[tuple[str, Any, Any]]:

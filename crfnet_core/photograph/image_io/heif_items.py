@@ -28,7 +28,7 @@ def decoded_pixels(meta: bytes) -> int:
     areas, parts = dict[int, int](), dict[int, list[int]]()
     for kind, content in boxes(meta[4:]):
         if kind == b"iprp":
-            areas |= _areas(content)
+            areas |= {item: max(map(_area, owned), default=0) for item, owned in _properties(content).items()}
         elif kind == b"iref":
             for item, others in _references(content):
                 parts.setdefault(item, []).extend(others)
@@ -44,19 +44,36 @@ def decoded_pixels(meta: bytes) -> int:
     return max((pixels(item, 0) for item in {*areas, *parts}), default=0)
 
 
-def _areas(properties: bytes) -> dict[int, int]:
-    """Return the pixels of each item by its properties `ispe`: the box `iprp` has these, and who has which."""
-    areas, found = [0], dict[int, int]()
+def is_turned(meta: bytes) -> bool:
+    """Return whether the main item is turned or mirrored, by its properties `irot` and `imir`."""
+    owned, main = dict[int, list[tuple[bytes, bytes]]](), 0
+    for kind, content in boxes(meta[4:]):
+        if kind == b"iprp":
+            owned |= _properties(content)
+        elif kind == b"pitm":
+            main = _number(content, 4, 4 if content[:1] > b"\0" else 2)
+    return any(name == b"imir" or (name == b"irot" and _number(box, 0, 1) & 3) for name, box in owned.get(main, ()))
+
+
+def _area(owned: tuple[bytes, bytes]) -> int:
+    """Return the pixels that a property `ispe` states."""
+    name, box = owned
+    return _number(box, 4, 4) * _number(box, 8, 4) * (name == b"ispe")
+
+
+def _properties(properties: bytes) -> dict[int, list[tuple[bytes, bytes]]]:
+    """Return the properties of each item, each with its name: the box `iprp` has these, and who has which."""
+    stored, found = [(b"", b"")], dict[int, list[tuple[bytes, bytes]]]()
     for kind, content in boxes(properties):
         if kind == b"ipco":
-            areas += [_number(box, 4, 4) * _number(box, 8, 4) * (name == b"ispe") for name, box in boxes(content)]
+            stored += boxes(content)
         elif kind == b"ipma":
             place, size, width = 8, 4 if content[0] else 2, 2 if content[3] & 1 else 1
             while place < len(content):
                 item, count = _number(content, place, size), _number(content, place + size, 1)
                 ends = range(place + size + 1, place + size + 1 + count * width, width)
                 indices = [_number(content, end, width) & (1 << 8 * width - 1) - 1 for end in ends]
-                found[item] = max([found.get(item, 0), *(areas[index] for index in indices if index < len(areas))])
+                found.setdefault(item, []).extend(stored[index] for index in indices if index < len(stored))
                 place = ends.stop
     return found
 

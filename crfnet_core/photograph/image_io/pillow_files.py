@@ -22,7 +22,7 @@ from PIL.WebPImagePlugin import WebPImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS, check_size, damaged, with_segments
-from crfnet_core.photograph.image_io.heif_items import decoded_pixels, has_named_items
+from crfnet_core.photograph.image_io.heif_items import decoded_pixels, has_named_items, is_turned
 from crfnet_core.photograph.image_io.iso_boxes import find_box
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeArray, CodeValues, upright
@@ -75,7 +75,10 @@ def read_pillow_file(path: Path, kind: str) -> CodeValues:
         raise damaged(path, kind, str(problem)) from None
     nclx = main.info.get("nclx_profile") if main else None
     cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
-    return _code_values(picture, kind, cicp, has_gain_map=any(mark in meta for mark in _GAIN_MAPS))
+    values = _code_values(picture, kind, cicp)
+    turned = is_turned(meta) if kind == "HEIC" else values.metadata.is_turned  # libheif has turned it
+    has_gain_map = any(mark in meta for mark in _GAIN_MAPS)
+    return replace(values, metadata=replace(values.metadata, has_gain_map=has_gain_map, is_turned=turned))
 
 
 def _opened_heif(path: Path, kind: str) -> Any:
@@ -84,6 +87,8 @@ def _opened_heif(path: Path, kind: str) -> Any:
 
     with suppress(*_DAMAGE if kind == "AVIF" else ()):
         main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
+        if not len(main):
+            raise ValueError("its items are not supported by libheif")
         check_size(path, *main.size)
         return main
     return None
@@ -168,7 +173,7 @@ def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
     return rgb_codes(frame, coding, 2**bit_depth - 1)
 
 
-def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gain_map: bool) -> CodeValues:
+def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...]) -> CodeValues:
     """Return the upright samples, with a header as OpenImageIO would give it."""
     carried = with_segments(oiio.ImageSpec(), picture.info)
     turn = EXIF_TURNS.get(1 if picture.is_upright else carried.get_int_attribute("Orientation", 1), UPRIGHT)
@@ -182,5 +187,5 @@ def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gai
     header.attribute("Orientation", 1)
     if cicp:
         header.attribute("CICP", oiio.TypeDesc("int[4]"), cicp)
-    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map, is_turned=turn != UPRIGHT)
+    metadata = replace(metadata_of_header(header, kind), is_turned=turn != UPRIGHT)
     return CodeValues.from_samples(samples, picture.bit_depth, header, metadata)

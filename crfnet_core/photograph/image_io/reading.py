@@ -4,7 +4,7 @@ import io
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -23,11 +23,10 @@ from crfnet_core.photograph.image_io.header_checks import (
     damaged,
     oiio_message,
     with_plain_texts,
-    with_segments,
 )
-from crfnet_core.photograph.image_io.iso_boxes import find_box
 from crfnet_core.photograph.image_io.jp2_files import with_jp2_boxes
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
+from crfnet_core.photograph.image_io.jxl_files import JxlHeader, jxl_header, with_jxl_boxes
 from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
@@ -52,7 +51,7 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX and BMP. The values are divided by
     the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
     Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
-    or layers the first is read, of a TIFF file the first of the largest, of JPEG XL the last; of an HDR photograph with
+    or layers the first is read, of a TIFF file the first of the largest; of an HDR photograph with
     a gain map (Ultra HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
 
     Parameters
@@ -107,18 +106,18 @@ class _OpenFile:
     header: Any
     jpeg: JpegFile | None
     has_gain_map: bool = False
+    is_turned: bool = False  # whether the decoder has turned it upright
 
     @property
     def turn(self) -> Turn:
-        """The turn of the stored picture, by its orientation; the decoder of JPEG XL applies it by itself."""
-        orientation = 1 if self.kind == "JPEG XL" else self.header.get_int_attribute("Orientation", 1)
-        return EXIF_TURNS.get(orientation, UPRIGHT)
+        """The turn of the stored picture, by its orientation."""
+        return EXIF_TURNS.get(self.header.get_int_attribute("Orientation", 1), UPRIGHT)
 
     def metadata(self) -> FileMetadata:
         """Return the metadata of the upright picture."""
         metadata = metadata_of_header(self._upright_header(), self.kind, self.jpeg.metadata if self.jpeg else None)
         has_gain_map = self.has_gain_map or metadata.has_gain_map
-        return replace(metadata, is_turned=self.turn != UPRIGHT, has_gain_map=has_gain_map)
+        return replace(metadata, is_turned=self.is_turned or self.turn != UPRIGHT, has_gain_map=has_gain_map)
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
@@ -127,7 +126,7 @@ class _OpenFile:
         if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO:
             wrong = np.s_[..., :1] if bit_depth > 8 else np.s_[..., 1:]  # OpenImageIO inverts all samples of 8 bits
             values[wrong] = ~values[wrong]
-        if bit_depth in (10, 12):
+        if 8 < bit_depth < 16:
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
         header = self._upright_header()
         if self.kind in UNSTATED_ALPHA_KINDS and header.alpha_channel > 0:
@@ -171,7 +170,8 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
             with _opened_kind(path, kind) as file:
                 yield file
     except UnicodeEncodeError as problem:
-        raise PhotoError("name_not_utf8", path=ascii(str(path))) from problem
+        name = str(path).encode(errors="backslashreplace").decode()  # as the command prints such names
+        raise PhotoError("name_not_utf8", path=name) from problem
     except OSError as problem:
         raise PhotoError("cannot_open_photograph", path=path, problem=problem.strerror) from problem
 
@@ -180,6 +180,7 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
 def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
+    jxl = jxl_header(path) if kind == "JPEG XL" else JxlHeader()
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
@@ -193,7 +194,7 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF":
             _check_tiff(path, header)
         if kind in ("JPEG 2000", "JPEG XL"):  # OpenImageIO does not say that the second or fourth channel is alpha
-            header = with_jp2_boxes(header, path) if kind == "JPEG 2000" else _with_boxes(header, path)
+            header = with_jp2_boxes(header, path) if kind == "JPEG 2000" else with_jxl_boxes(header, path, jxl)
             header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
         if kind == "DPX":
             check_dpx(path, header)
@@ -204,7 +205,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
                 with _opened_kind(base, kind) as file:
                     yield replace(file, path=path, has_gain_map=True)
         else:
-            yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
+            header = with_color_chunks(header, path) if kind == "PNG" else header
+            yield _OpenFile(path, kind, source, header, jpeg, is_turned=jxl.orientation > 1)
     finally:
         source.close()
 
@@ -218,19 +220,6 @@ def _check_tiff(path: Path, header: Any) -> None:
         raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")
     if header.nchannels > 4 and EXTRA_SAMPLES not in directory:
         header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
-
-
-def _with_boxes(header: Any, path: Path) -> Any:
-    """Return the header of a JPEG XL file with EXIF and XMP, which OpenImageIO leaves out, unless compressed."""
-    segments = {}
-    with suppress(ValueError):  # of boxes that are too large or too far; a codestream has none
-        exif = find_box(path, b"Exif")
-        segments["exif"] = exif[4 + int.from_bytes(exif[:4]) :]
-        segments["xmp"] = find_box(path, b"xml ")
-    header = with_segments(header, segments)
-    header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    return header
 
 
 def _seek_picture(source: Any) -> None:

@@ -8,7 +8,7 @@ from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
-from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
+from crfnet_core.photograph.image_io.jxl_files import JxlHeader, with_jxl_boxes
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.crafted_files import xmp_packet
 from tests.helpers.images import write_image
@@ -108,4 +108,29 @@ def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
     header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
     header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
     with refused(PhotoError, "jxl_linear"):
-        checked_bit_depth(Path("a.jxl"), header, "JPEG XL")
+        with_jxl_boxes(header, Path("a.jxl"), JxlHeader())
+
+
+def test_lossless_jpeg_xl_tagged_linear_keeps_its_codes_and_its_tag(tmp_path):
+    content = "ff0a18401050b40808020100a8004b12c582852452d2f3273b13527c6f09760036999979f8f3e7441e5d23efa3b3c97cde05170"
+    (tmp_path / "a.jxl").write_bytes(bytes.fromhex(content.ljust(256, "0")))
+    values = read_codes(tmp_path / "a.jxl")
+    np.testing.assert_array_equal(values.codes, np.arange(72).reshape(4, 6, 3) * 3 + 7)
+    assert values.metadata.color.transfer == "linear"
+
+
+@pytest.mark.parametrize("head", [b"", b"\0\0\0\x0cJXL \r\n\x87\n" + struct.pack(">I4sI", 100, b"jxlp", 0)])
+def test_an_animation_of_jpeg_xl_is_refused(tmp_path, head):
+    """OpenImageIO would return its last frame. The bits: small sides, fields that are not the default, an animation."""
+    fields = 1 | 3 << 1 | 1 << 6 | 1 << 10 | 1 << 16
+    (tmp_path / "a.jxl").write_bytes(head + b"\xff\x0a" + fields.to_bytes(86, "little"))
+    with refused(PhotoError, "coding_not_read", problem="an animation"):
+        read_codes(tmp_path / "a.jxl")
+
+
+def test_jpeg_xl_of_10_bits_is_turned_upright_says_so_and_keeps_its_bits(tmp_path):
+    content = "ff0a18400b0514970408020100c8004b12c5828524d640e436100841d5555007a02b140a85429f38e6828593a14796c542dd8f9c"
+    (tmp_path / "a.jxl").write_bytes(bytes.fromhex((content + "da160a0d8d576802").ljust(256, "0")))
+    values = read_codes(tmp_path / "a.jxl")
+    assert (values.bit_depth, values.metadata.is_turned) == (10, True)
+    np.testing.assert_array_equal(values.codes, np.rot90(np.arange(72).reshape(4, 6, 3) * 14 + 7, -1))

@@ -36,6 +36,8 @@ def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
     np.testing.assert_array_equal(values.codes, np.rot90(colored_ramp(8), -1))
     assert values.header.get_int_attribute("Orientation") == 1
     assert (values.header.width, values.header.height) == (48, 64)
+    assert values.metadata.is_turned
+    assert not read_photo(heif / "rgb8.heic").metadata.is_turned
 
 
 def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
@@ -127,6 +129,25 @@ def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
     with refused(PhotoError, "damaged", problem="the type of an item is not text"):
         read_photo(tmp_path / "a.heic")
+
+
+@pytest.mark.parametrize(
+    ("name", "stored", "other"),
+    [
+        ("a.heic", b"hvc1", b"jpeg"),
+        ("a.avif", b"av01", b"iden"),
+        ("a.png", b"\0\0\0\rIHDR", b"\0\0\0\4CgBIP\0 \2+\xd5\xb3\x7f\0\0\0\rIHDR"),
+    ],
+)
+def test_a_coding_that_the_decoder_lacks_is_not_called_damage(heif, tmp_path, name, stored, other):
+    """HEIF of JPEG, AVIF with an item derived from others, PNG of Apple's Xcode."""
+    content = (heif / "rgb8.heic").read_bytes()
+    if name != "a.heic":
+        Image.fromarray(colored_ramp(8)).save(tmp_path / name)
+        content = (tmp_path / name).read_bytes()
+    (tmp_path / name).write_bytes(content.replace(stored, other, 1))
+    with refused(PhotoError, "coding_not_read"):
+        read_photo(tmp_path / name)
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):

@@ -26,6 +26,15 @@ def test_white_is_zero_but_alpha_is_not_inverted(tmp_path, bits):
     np.testing.assert_array_equal(values.alpha, codes[..., 1])
 
 
+@pytest.mark.parametrize("bits", [10, 12, 14])
+def test_packed_codes_of_tiff_keep_their_bits(tmp_path, bits):
+    codes = np.array([0, 1, 777, 2 ** (bits - 1), 2**bits - 2, 2**bits - 1, 5, 6])
+    packed = int("".join(f"{code:0{bits}b}" for code in codes), 2).to_bytes(bits)
+    (tmp_path / "a.tif").write_bytes(tiff(8, 1, samples=1, photometric=1, bits=bits, content=packed))
+    values = read_codes(tmp_path / "a.tif")
+    assert (values.bit_depth, values.codes[0, :, 0].tolist()) == (bits, codes.tolist())
+
+
 @pytest.mark.parametrize(("photometric", "colors"), [(2, [0, 1, 2]), (1, [0, 0, 0])])
 def test_channels_of_unknown_use_are_neither_colors_nor_alpha(tmp_path, photometric, colors):
     codes = np.arange(20, dtype=np.uint8).reshape(2, 2, 5)
@@ -127,10 +136,10 @@ def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
 
 @pytest.mark.parametrize(
     ("orientation", "elements", "descriptor", "channels"),
-    [(5, 1, 50, 3), (0, 3, 1, 3), *((0, 1, descriptor, 3) for descriptor in (53, 100, 151)), (0, 1, 51, 4)],
+    [(5, 1, 50, 3), (0, 3, 1, 3), *((0, 1, descriptor, 3) for descriptor in (0, 6, 53, 100, 151)), (0, 1, 51, 4)],
 )
 def test_dpx_that_openimageio_misreads_is_refused(tmp_path, orientation, elements, descriptor, channels):
-    """Lines from top to bottom, planes apart, other components, and lines of 10 bits that end within a word."""
+    """Lines from top to bottom, planes apart, other components, and lines of 10 bits (6, 51) that end within a word."""
     path = write_image(tmp_path / "a.dpx", np.zeros((16, 25, channels), np.uint16), oiio__BitsPerSample=10)
     content = bytearray(path.read_bytes())
     content[768:772] = struct.pack(">2H" if content.startswith(b"SDPX") else "<2H", orientation, elements)
@@ -138,6 +147,23 @@ def test_dpx_that_openimageio_misreads_is_refused(tmp_path, orientation, element
     path.write_bytes(content)
     with refused(PhotoError, "coding_not_read"):
         read_codes(path)
+
+
+@pytest.mark.parametrize("place", [0, 2**32 - 1])
+def test_dpx_that_does_not_state_where_its_pixels_are_is_refused_as_a_coding(tmp_path, place):
+    path = write_image(tmp_path / "a.dpx", np.zeros((16, 24, 3), np.uint8))
+    content = path.read_bytes()
+    path.write_bytes(content[:808] + struct.pack("=I", place) + content[812:])
+    with refused(PhotoError, "coding_not_read"):
+        read_codes(path)
+
+
+@pytest.mark.parametrize(("name", "descriptor"), [("Y", 6), ("R", 1), ("G", 2), ("B", 3)])
+def test_dpx_of_one_channel_is_gray_also_if_it_has_the_name_of_a_color(tmp_path, name, descriptor):
+    codes = np.arange(16 * 24, dtype=np.uint16).reshape(16, 24, 1)
+    path = write_image(tmp_path / "a.dpx", codes << 6 | codes >> 4, names=name, oiio__BitsPerSample=10)
+    assert path.read_bytes()[800] == descriptor
+    np.testing.assert_array_equal(read_codes(path).codes, np.broadcast_to(codes, (16, 24, 3)))
 
 
 @pytest.mark.parametrize("bits", [10, 12])

@@ -48,6 +48,20 @@ def test_an_untagged_exr_is_linearized_only_if_the_user_says_that_it_is_encoded(
     assert read_image(tmp_path / "linear.exr").max() < 0.5
 
 
+def test_the_share_of_encoded_values_that_the_lut_clips_is_said(crfnet, look, tmp_path):
+    values = np.full((4, 4, 3), 0.5, np.float32)
+    values[0], values[1, 0] = 1.5, -1
+    plate = write_image(tmp_path / "plate.exr", values)
+    write_image(tmp_path / "inside.exr", values.clip(0, 1))
+    arguments = ("--lut", look / "plate.spi1d", "--encoded", "--out")
+    out = crfnet("linearize", plate, *arguments, tmp_path / "a.exr").out
+    assert "Warning: 31 % of the values are outside the LUT" in out
+    document = json.loads(crfnet("linearize", plate, *arguments, tmp_path / "b.exr", "--json").out)
+    assert document["clipped"] == 15 / 48
+    assert "31 % of the values" in crfnet("linearize", plate, *arguments, tmp_path / "each", "--each").out
+    assert "values" not in crfnet("linearize", tmp_path / "inside.exr", *arguments, tmp_path / "c.exr").out
+
+
 def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     forward = tmp_path / "forward.cube"
     write_lut(forward, forward_lut(read_lut(look / "plate.spi1d")))

@@ -57,6 +57,9 @@ def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
     assert (facts["first"].facts["path"], facts["gaps"]) == (tmp_path / "plate.0002.png", "; missing are 4, 6-8")
     assert listed(out) == ["a.1.exr", "a.5.exr", "a.9.exr"]
     assert calls[-1] == (5, 5)
+    with pytest.raises(PlateError) as none:
+        linearize(pattern, out / "a.%d.exr", LUT, frames="2-3")
+    assert ["the others are written" in str(error.value) for error in (caught, none)] == [True, False]
     write_sequence(tmp_path, (2, 3))
     report = linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
     assert (len(report.written), calls[-3:]) == (2, [(3, 5), (4, 5), (5, 5)])

@@ -1,0 +1,112 @@
+"""JPEG XL: refuse animations and linear light; find EXIF, XMP, the turn and the bits, which OpenImageIO leaves out.
+
+Source: ISO/IEC 18181-1:2024, D.2 and D.3 (the header of the codestream), and 18181-2 (boxes).
+"""
+
+import mmap
+import re
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.image_io.header_checks import text_attribute, with_segments
+from crfnet_core.photograph.image_io.iso_boxes import find_box
+
+#: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
+_LINEAR_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
+
+#: The start of a codestream, which stands alone, in one box or in numbered ones; bytes behind it that are read.
+_START, _HEAD = re.compile(rb"(\A|jxlc|jxlp.{4})\xff\x0a", re.DOTALL), 4096
+
+#: Bits of a side of the picture and of its preview, if that is a multiple of 8 and otherwise.
+_SIDES, _PREVIEW_SIDES = ((5,), (9, 13, 18, 30)), ((0, 0, 5, 9), (6, 8, 10, 12))
+
+
+@dataclass(frozen=True)
+class JxlHeader:
+    """The fields of a codestream's header that are used; these are the default ones."""
+
+    orientation: int = 1
+    bits: int = 8  # per sample
+    is_xyb: bool = True  # else the codes of the picture's own color space are stored
+
+
+def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
+    """Return the header with EXIF and XMP, unless these are compressed; refuse what only the decoder made linear."""
+    if stored.is_xyb and text_attribute(header, "ICCProfile:profile_description") in _LINEAR_PROFILES:
+        raise PhotoError("jxl_linear", path=path)
+    segments = {}
+    with suppress(ValueError):  # of boxes that are too large or too far; a codestream has none
+        exif = find_box(path, b"Exif")
+        segments["exif"] = exif[4 + int.from_bytes(exif[:4]) :]
+        segments["xmp"] = find_box(path, b"xml ")
+    header = with_segments(header, segments)
+    header.attribute("Orientation", 1)  # the decoder has applied that of the codestream
+    header.attribute("oiio:UnassociatedAlpha", 1)
+    if not stored.is_xyb:
+        header.attribute("oiio:BitsPerSample", stored.bits)
+    return header
+
+
+def jxl_header(path: Path) -> JxlHeader:
+    """Return the header of the codestream; refuse an animation, of which OpenImageIO returns the last frame."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        start = _START.search(content)
+        fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
+    fields.skip_sides(*_SIDES)
+    if fields.number():  # all are the default ones
+        return JxlHeader()
+    orientation = 1
+    if fields.number():
+        orientation += fields.number(3)
+        for sides in (_SIDES, _PREVIEW_SIDES):
+            if fields.number():
+                fields.skip_sides(*sides)
+        if fields.number():
+            raise PhotoError("coding_not_read", path=path, kind="JPEG XL", problem="an animation")
+    bits = fields.bit_depth()
+    fields.number()  # whether 16 bits are enough for decoding
+    for _ in range(fields.choice((0, 0), (1, 0), (2, 4), (1, 12))):
+        fields.skip_channel()
+    return JxlHeader(orientation, bits, is_xyb=bool(fields.number()))
+
+
+@dataclass
+class _Fields:
+    """Fields of a header, the lowest bit of each byte first."""
+
+    rest: int
+
+    def number(self, width: int = 1) -> int:
+        value = self.rest & (1 << width) - 1
+        self.rest >>= width
+        return value
+
+    def choice(self, *forms: tuple[int, int]) -> int:
+        """Return a field of one of four forms, which two bits name: the least value, and the bits above it."""
+        least, width = forms[self.number(2)]
+        return least + self.number(width)
+
+    def skip_sides(self, small: tuple[int, ...], large: tuple[int, ...]) -> None:
+        """Skip the sides of a picture: the second one is left out if the ratio between them is a usual one."""
+        widths = small if self.number() else large
+        self.number(widths[self.number(2) if widths[1:] else 0])
+        if not self.number(3):
+            self.number(widths[self.number(2) if widths[1:] else 0])
+
+    def bit_depth(self) -> int:
+        is_float = self.number()
+        bits = self.choice(*(((32, 0), (16, 0), (24, 0)) if is_float else ((8, 0), (10, 0), (12, 0))), (1, 6))
+        self.number(4 * is_float)  # of the exponent
+        return bits
+
+    def skip_channel(self) -> None:
+        """Skip a channel beside the colors; the default one is alpha of 8 bits."""
+        if not self.number():
+            is_alpha = self.choice((0, 0), (1, 0), (2, 4), (18, 6)) == 0
+            self.bit_depth()
+            self.choice((0, 0), (3, 0), (4, 0), (1, 3))  # fewer samples
+            self.number(8 * self.choice((0, 0), (0, 4), (16, 5), (48, 10)))  # its name
+            self.number(is_alpha)  # whether the colors are multiplied by it
