@@ -68,8 +68,8 @@ class TestBase:
         before = tree(studio.parent)
         done = add(studio, tmp_path / "new", small_look)
         assert tree(studio.parent) == before
-        assert listed(tmp_path / "new") == ["config.ocio", "plate01.spi1d"]
-        assert done.files == (tmp_path / "new" / "config.ocio", tmp_path / "new" / "plate01.spi1d")
+        assert listed(tmp_path / "new") == [path.name for path in done.files]
+        assert [path.parent for path in done.files] == [tmp_path / "new"] * 2
         result = loaded(done.path)
         assert all_names(result) == all_names(loaded(studio))
         assert_same(conversions(result), conversions(loaded(studio)))
@@ -116,6 +116,16 @@ class TestBase:
         assert_same(conversions(result), conversions(loaded(studio)))
         np.testing.assert_allclose(converted(result, "film", "scene_linear", CODES), THIRD_LUT.apply(CODES), atol=1e-6)
 
+    def test_a_plates_lut_stays_its_own_for_every_value_of_a_variable(self, studio, small_look, tmp_path, monkeypatch):
+        """Else the LUT of the plate's name that another show has would change the plate."""
+        result = add(studio, tmp_path / "new", small_look).path
+        (tmp_path / "b" / "luts").mkdir(parents=True)
+        write_lut(tmp_path / "b" / "luts" / "plate01.spi1d", THIRD_LUT)
+        monkeypatch.setenv("SHOW", str(tmp_path / "b"))
+        np.testing.assert_allclose(
+            converted(loaded(result), NAME, "lin_rec709_scene", CODES), LUT.apply(CODES), atol=1e-5
+        )
+
     @pytest.mark.parametrize("path", ["luts", "../link/../luts"])
     def test_a_link_is_a_base_of_its_own(self, studio, small_look, tmp_path, path):
         """OpenColorIO looks for files next to it, and takes ".." out of names."""
@@ -133,6 +143,7 @@ class TestBase:
     @pytest.mark.parametrize("name", ["film", "FILM"])
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
         """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
+        studio.write_text(studio.read_text().replace("$SHOW/", ""))
         look = write_look(tmp_path / "look", [f"{name}.jpg"])
         done = add(studio, tmp_path / "new", look)
         assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
@@ -143,7 +154,7 @@ class TestBase:
 
     @pytest.mark.parametrize("name", ["plate01.spi1d", "sub/PLATE01.spi1d"])
     def test_a_lut_that_the_base_misses_is_not_found_in_a_plates(self, studio, small_look, tmp_path, name):
-        studio.write_text(studio.read_text().replace("film.spi1d", name))
+        studio.write_text(studio.read_text().replace("$SHOW/", "").replace("film.spi1d", name))
         assert listed(add(studio, tmp_path / "new", small_look).path.parent)[1] == "plate01 (look).spi1d"
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
