@@ -122,7 +122,7 @@ SENTENCES: Mapping[str, str] = {
     "no_dask": "a scheduler needs Dask: pip install 'crfnet[cluster]'",
     "no_memory": "{path}: not enough memory",
     "no_scheduler": "{address}: no Dask scheduler answers there ({reason}); check the address",
-    "not_records": "{path}: holds other lines than records of photographs; choose another folder",
+    "not_records": "{path}: is a link, or holds other lines than records of photographs; choose another folder",
     "other_options": "{path}: has {photo} with other options or another response; give these, or choose another folder",
     "photograph_changed": "{path}: has changed since its files were written; delete them, or choose another folder",
     "photographs_failed": "{failed} of {count} photographs failed; the first: {problem}",

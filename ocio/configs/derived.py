@@ -108,9 +108,7 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
     aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
     used = {folded(name) for name in lut_files} | _names_on_path(base)
     text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
-    if re.search(
-        r"\$[\w{]|%.+%", text
-    ):  # variables, whose other values lead to other files: none has a name by content
+    if re.search(r"\$[\w{]|%.+%", text):  # other values of variables lead to other files, but to none of this name
         file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     named = (name for name in stems if not re.search(rf"[\s\"'/\\]{re.escape(folded(name))}", text))
