@@ -8,6 +8,9 @@ from pathlib import Path
 from crfnet_core.estimate.options import AnalysisOptions
 
 from ... import pipeline
+from ...configs.files import load_config
+from ...configs.plate_color_space import plates_in_config
+from ...defaults import CONFIG_NAME
 from ...errors import PlateError
 from ...options import EstimateOptions, PlateOptions, stated_device
 from ...pipeline.batch import Batch
@@ -57,8 +60,18 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
         )
     document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
     lines = [record.line for record in records]
-    more = ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
-    print_result(document, [*lines, *more], as_json=arguments.json)
+    if names := _without_rule({batch.out / record.folder / CONFIG_NAME for record in records if record.lut}):
+        document["without_rule"] = names
+        lines.append(f"note: no file rule leads to {', '.join(names)}: several plates have files of these names")
+    lines += ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
+    print_result(document, lines, as_json=arguments.json)
     if failed := [record for record in records if record.error]:
         raise PlateError("photographs_failed", failed=len(failed), count=len(records), problem=failed[0].error)
     return [record.verdict for record in records]
+
+
+def _without_rule(configs: Iterable[Path]) -> list[str]:
+    """Return the color spaces in configs to which no file rule leads."""
+    existing = [load_config(config) for config in sorted(configs) if config.exists()]
+    plates = [plate for config in existing for plate in plates_in_config(config)]
+    return [plate.name for plate in plates if plate.name not in plate.rules.values()]
