@@ -57,9 +57,18 @@ def test_all_of_a_built_in_config_is_kept_the_plate_is_right_in_aces_and_only_it
     expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
     np.testing.assert_allclose(converted(result, NAME, "aces_interchange", pixels), expected, atol=1e-5)
     assert [space_of(result, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
-    for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
+    for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR"):
         assert result.getColorSpace(space_of(result, path)).getName().startswith("Linear Rec.709")
-    for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
+    for path in (
+        "b.exr",
+        "plate01.0001.exr",
+        "x/b.jpg",
+        "plate01.png",
+        "plate02.jpg",
+        "aplate01.jpg",
+        "plate01.jpg.exr",
+        "b.mov",
+    ):
         assert space_of(result, path) == space_of(base, path)
 
 
