@@ -69,6 +69,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
     "lut_pixels": "a LUT of R, G and B needs pixels of shape (..., 3), found {shape}",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
+    "lut_rows": "{path}: holds {rows} rows, and states {length}; write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",
     "lut_suffix": "{path}: LUT files end in {suffixes}; rename it",
