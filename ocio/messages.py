@@ -1,6 +1,12 @@
 """Every sentence that the errors of `ocio` say, each once, by its code; see `crfnet_core.messages` for the rules."""
 
+import sys
 from collections.abc import Mapping
+
+#: The end of a sentence about a name that is not text, perhaps only because of the user's environment.
+NOT_TEXT = "is not valid Unicode; rename it"
+if sys.getfilesystemencoding() != "utf-8":
+    NOT_TEXT = f"is not text in {sys.getfilesystemencoding()}, which the environment states; set LC_ALL=C.UTF-8"
 
 SENTENCES: Mapping[str, str] = {
     # movies
