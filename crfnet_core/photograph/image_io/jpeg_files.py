@@ -15,8 +15,14 @@ from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 #: A marker with its length, behind bytes that belong to no segment, which decoders skip.
 _SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
 
+#: A marker behind the data of a scan, which holds zeros behind its 255s, and restart markers; with its length.
+_LATER_SEGMENT = re.compile(rb"\xff+([^\0\1\xd0-\xd7\xff])(..)", re.DOTALL)
+
 #: The most segments of a header, and bytes between them, which Pillow reads one by one.
 _MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20
+
+#: The most scans, each of which takes as long as the whole picture: the advice of libjpeg-turbo for untrusted files.
+_MOST_SCANS = 500
 
 _START_OF_SCAN, _END_OF_IMAGE, _JPEG_LS = 0xDA, b"\xff\xd9", 0xF7
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -55,6 +61,8 @@ def checked_jpeg(path: Path) -> JpegFile:
                 check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))
         if content.rfind(_END_OF_IMAGE, scan) < 0:
             raise damaged(path, "JPEG", "it has no end marker")
+        if _has_many_scans(content, before):
+            raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"more than {_MOST_SCANS} scans")
         return JpegFile(read_jpeg_header(content), frozenset(warnings))
 
 
@@ -66,6 +74,18 @@ def base_image(path: Path) -> bytes:
         if len(base) == len(content):
             raise PhotoError("scene_linear_file", path=path, kind="a JPEG file of half samples")
     return base
+
+
+def _has_many_scans(content: mmap.mmap, end: int) -> bool:
+    """Return whether more than `_MOST_SCANS` scans, or `_MOST_SEGMENTS` segments, follow the first one's segment."""
+    scans = 1
+    for _ in range(_MOST_SEGMENTS):
+        segment = _LATER_SEGMENT.search(content, end)
+        if segment is None or segment[1] == _END_OF_IMAGE[1:]:
+            return scans > _MOST_SCANS
+        scans += segment[1][0] == _START_OF_SCAN
+        end = segment.start(2) + int.from_bytes(segment[2], "big")
+    return True
 
 
 @contextmanager
