@@ -31,8 +31,8 @@ from .sources import ConfigSource
 class DerivedConfig:
     """A config that was written with plates added: its path, all files written, and the plates.
 
-    `without_rule` holds the file names, or patterns, that have no rule: many cameras give such a name, or several
-    plates have it, or the base has no space for it.
+    `without_rule` holds the file names, or patterns, to which rules give no space of their own: many cameras give such
+    a name, or several plates have it, or the base has no space for it.
     """
 
     path: Path
