@@ -115,7 +115,8 @@ class RecordFile:
     @contextmanager
     def locked(self) -> Iterator[BinaryIO]:
         """Open the file for appending, with no other process in such a block meanwhile."""
-        with open(self.path, "a+b", opener=_opened_itself) as file:
+        no_link = getattr(os, "O_NOFOLLOW", 0)  # which others may have put there
+        with open(self.path, "a+b", opener=lambda path, flags: os.open(path, flags | no_link, 0o666)) as file:
             lock(file)
             yield file
 
@@ -128,8 +129,3 @@ class RecordFile:
             self.read()
             file.seek(0)
             file.truncate(file.read().rfind(b"\n") + 1)
-
-
-def _opened_itself(path: str, flags: int) -> int:
-    """Open a file, but not the target of a link that others have put in its place."""
-    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0), 0o666)

@@ -60,7 +60,9 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
         )
     document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
     lines = [record.line for record in records]
-    if names := _without_rule({batch.out / record.folder / CONFIG_NAME for record in records if record.lut}):
+    configs = sorted({batch.out / record.folder / CONFIG_NAME for record in records if record.lut})
+    plates = [plate for path in configs if path.exists() for plate in plates_in_config(load_config(path))]
+    if names := [plate.name for plate in plates if plate.name not in plate.rules.values()]:
         document["without_rule"] = names
         lines.append(f"note: no file rule leads to {', '.join(names)}: several plates have files of these names")
     lines += ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
@@ -68,10 +70,3 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
     if failed := [record for record in records if record.error]:
         raise PlateError("photographs_failed", failed=len(failed), count=len(records), problem=failed[0].error)
     return [record.verdict for record in records]
-
-
-def _without_rule(configs: Iterable[Path]) -> list[str]:
-    """Return the color spaces in configs to which no file rule leads."""
-    existing = [load_config(config) for config in sorted(configs) if config.exists()]
-    plates = [plate for config in existing for plate in plates_in_config(config)]
-    return [plate.name for plate in plates if plate.name not in plate.rules.values()]
