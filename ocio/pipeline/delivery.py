@@ -58,9 +58,7 @@ def deliver(
     more: Mapping[Path, Callable[[Path], None]] | None = None,
     progress: Progress | None = None,
 ) -> list[str]:
-    """Write the LUTs, the config, the linear plates and `more` files of a plan, by their writers.
-
-    Return the color spaces of other plates that were in the config, which holds this plate alone.
+    """Write the files of a plan, and `more` by their writers; return the color spaces that its config no longer has.
 
     `sources` are the plates of `plan.files.linear`: one file for each, or one sequence of them, whose frames `progress`
     counts, perhaps in another thread. Raise CRFNetError if a file cannot be written or OpenColorIO refuses the config;

@@ -69,12 +69,6 @@ def staged_plan(plan: OutputPlan, targets: Sequence[Path]) -> Iterator[tuple[Pat
     with ExitStack() as until_named, all_or_none(targets, overwrite=plan.plates.overwrite) as folder:
         yield folder, lost
         until_named.enter_context(locked_folder(folder.parent))
-        lost += _other_spaces(plan.files) if plan.space else ()
-
-
-def _other_spaces(files: OutputFiles) -> tuple[str, ...]:
-    """Return the color spaces of other plates in the config that is there; none if it cannot be read."""
-    with suppress(ConfigError):
-        plates = plates_in_config(load_config(files.config))
-        return tuple(plate.name for plate in plates if plate.name != files.color_space)
-    return ()
+        with suppress(ConfigError):  # of a config that cannot be read
+            plates = plates_in_config(load_config(plan.files.config)) if plan.space else []
+            lost += [plate.name for plate in plates if plate.name != plan.files.color_space]

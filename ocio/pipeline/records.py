@@ -122,10 +122,8 @@ class RecordFile:
 
     def _drop_cut_line(self, file: BinaryIO) -> None:
         """Remove what a killed run has written of its last line; a PlateError for another file."""
-        if file.seek(0, os.SEEK_END) == 0:
-            return
-        file.seek(-1, os.SEEK_END)
-        if file.read() != b"\n":
+        file.seek(max(file.seek(0, os.SEEK_END) - 1, 0))
+        if file.read() not in (b"", b"\n"):
             self.read()
             file.seek(0)
             file.truncate(file.read().rfind(b"\n") + 1)
