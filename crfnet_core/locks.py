@@ -1,6 +1,10 @@
 """Locks of open files between processes; the system lifts them when the file is closed, or a process dies."""
 
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
 from typing import IO, Any
 
 if sys.platform == "win32":
@@ -20,3 +24,14 @@ else:
     def lock(file: IO[Any], *, wait: bool = True) -> None:
         """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
         fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+@contextmanager
+def locked_folder(folder: Path) -> Iterator[None]:
+    """Let no other process into such a block of a folder meanwhile; Windows and some file systems lock no folders."""
+    with ExitStack() as stack:
+        with suppress(OSError):
+            number = os.open(folder, os.O_RDONLY)
+            stack.callback(os.close, number)
+            fcntl.flock(number, fcntl.LOCK_EX)
+        yield

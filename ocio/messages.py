@@ -1,6 +1,12 @@
 """Every sentence that the errors of `ocio` say, each once, by its code; see `crfnet_core.messages` for the rules."""
 
+import sys
 from collections.abc import Mapping
+
+#: The end of a sentence about a name that is not text, perhaps only because of the user's environment.
+NOT_TEXT = "is not valid Unicode; rename it"
+if sys.getfilesystemencoding() != "utf-8":
+    NOT_TEXT = f"is not text in {sys.getfilesystemencoding()}, which the environment states; set LC_ALL=C.UTF-8"
 
 SENTENCES: Mapping[str, str] = {
     # movies
@@ -70,6 +76,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
     "lut_pixels": "needed are pixels of R, G and B, shape (..., 3), found {shape}; leave alpha out",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
+    "lut_rows": "{path}: holds {rows} rows, and states {length}; write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",
     "lut_suffix": "{path}: LUT files end in {suffixes}; rename it",
@@ -123,7 +130,7 @@ SENTENCES: Mapping[str, str] = {
     "no_dask": "a scheduler needs Dask: pip install 'crfnet[cluster]'",
     "no_memory": "{path}: not enough memory",
     "no_scheduler": "{address}: no Dask scheduler answers there ({reason}); check the address",
-    "not_records": "{path}: holds other lines than records of photographs; choose another folder",
+    "not_records": "{path}: is a link, or holds other lines than records of photographs; choose another folder",
     "other_options": "{path}: has {photo} with other options or another response; give these, or choose another folder",
     "photograph_changed": "{path}: has changed since its files were written; delete them, or choose another folder",
     "photographs_failed": "{failed} of {count} photographs failed; the first: {problem}",

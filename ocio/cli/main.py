@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
+from ..messages import NOT_TEXT
 from .arguments.command_line import build_parser
 from .arguments.parts import BAD_INPUT
 from .interruption import interruptible
@@ -16,7 +17,7 @@ from .streams import complete_streams, own_stderr, shown
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
     MemoryError: "not enough memory; close something or give fewer photographs",
-    UnicodeEncodeError: "a file's name is not valid Unicode; rename it",
+    UnicodeEncodeError: f"a file's name {NOT_TEXT}",
     RuntimeError: "the system starts no more threads; close something, or raise its limit of processes",
 }
 

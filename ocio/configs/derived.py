@@ -18,6 +18,7 @@ from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
+from ..luts.rgb_lut import lut_identity
 from ..output_files import all_or_none, check_targets, distinct_names, folded
 from .file_rules import LINEAR_SUFFIX, is_counter_name
 from .files import write_config
@@ -30,8 +31,8 @@ from .sources import ConfigSource
 class DerivedConfig:
     """A config that was written with plates added: its path, all files written, and the plates.
 
-    `without_rule` holds the file names, or patterns, that have no rule: many cameras give such a name, or several
-    plates have it, or the base has no space for it.
+    `without_rule` holds the file names, or patterns, to which rules give no space of their own: many cameras give such
+    a name, or several plates have it, or the base has no space for it.
     """
 
     path: Path
@@ -105,9 +106,11 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
     file, config = Path(look.space.lut_file), base.config
     taken = {folded(name) for name in (*names, *_other_names(config))}
     aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
-    stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     used = {folded(name) for name in lut_files} | _names_on_path(base)
     text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
+    if re.search(r"\$[\w{]|%.+%", text):  # other values of variables lead to other files, but to none of this name
+        file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
+    stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     named = (name for name in stems if not re.search(rf"[\s\"'/\\]{re.escape(folded(name))}", text))
     lut_file = next(name for name in named if folded(name) not in used)
     free = (name for name in distinct_names(look.space.name, look.folder) if folded(name) not in taken)

@@ -41,15 +41,18 @@ def plate_pattern(name: str) -> str:
     return FRAME_NUMBER.sub(".#", literal(stem)) + dot + literal(suffix)
 
 
-def linear_patterns(stem: str, names: Sequence[str] = (), plates: str = "") -> tuple[str, ...]:
+def linear_patterns(
+    stem: str, names: Sequence[str] = (), plates: str = "", *, is_movie: bool = False
+) -> tuple[str, ...]:
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
     `stem` is the stem of the plate's files, for example "clip" or "shot.0001"; `plates` is the pattern of a sequence.
-    One pattern stands for more than `MOST_PATTERNS` names.
+    One pattern stands for more than `MOST_PATTERNS` names. A still has no frames: others' renders are called so.
     """
     named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
     frames = [plates.rpartition(".")[0] + ".exr"] if "#" in plates else []
-    return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr", *frames]))
+    frames += [FRAME_NUMBER.sub("", stem) + ".#.exr"] if is_movie or FRAME_NUMBER.search(stem) else []
+    return tuple(dict.fromkeys([*named, *frames]))
 
 
 def is_counter_name(name: str) -> bool:

@@ -9,6 +9,7 @@ from typing import Self
 import PyOpenColorIO as OCIO
 
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
+from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
 from ..errors import ConfigError
 from ..output_files import OutputFiles
@@ -70,6 +71,8 @@ class PlateColorSpace:
         `file_pattern` is by default the photograph's name, where a frame number at the end (shot.0001.jpg) stands for
         any. Raise a ConfigError if no color space can have the name.
         """
+        is_movie = photo.suffix.lower() not in (*PHOTOGRAPH_SUFFIXES, ".exr")
+        linear = [path.name for path in files.linear]
         return cls(
             name=files.color_space,
             lut_file=files.lut.name,
@@ -77,7 +80,7 @@ class PlateColorSpace:
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_patterns=(file_pattern or plate_pattern(photo.name),),
             exposure=exposure,
-            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear], file_pattern),
+            linear_patterns=linear_patterns(files.lut.stem, linear, file_pattern, is_movie=is_movie),
         )
 
 

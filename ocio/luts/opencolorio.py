@@ -49,11 +49,13 @@ def read_lut(path: str | Path) -> AnyLut:
     """
     check_kinds(path=(path, str | Path))
     path = Path(path)
-    comments = _checked_text(path)
+    text = _checked_text(path)
+    comments = [line[1:] for line in map(str.strip, text.split("\n")) if line.startswith("#")]
     processor = _processor(path)
     comments = comments or [child.getElementValue() for child in processor.getFormatMetadata().getChildElements()]
     steps = list(processor.createGroupTransform())
     _check_steps(path, steps)
+    _check_rows(path, text, steps)
     domain = _domain(steps[0])
     rest = steps[1:] if domain else steps
     domain = domain or (0.0, 1.0)
@@ -65,8 +67,8 @@ def read_lut(path: str | Path) -> AnyLut:
         raise LutError("lut_invalid", path=path, problem=problem) from problem
 
 
-def _checked_text(path: Path) -> list[str]:
-    """Return the lines of comment of a file; raise a LutError if it is absent, too large, endless, or reads others."""
+def _checked_text(path: Path) -> str:
+    """Return the text of a file; raise a LutError if it is absent, too large, endless, or reads others."""
     try:
         content = read_bytes(path, most=MAX_FILE_SIZE)
     except OSError as problem:
@@ -80,7 +82,7 @@ def _checked_text(path: Path) -> list[str]:
     begins = [number for number, line in enumerate(lines) if re.search("BEGIN METADATA", line, re.IGNORECASE)]
     if begins and not any(re.match("END METADATA", line, re.IGNORECASE) for line in lines[begins[0] :]):
         raise LutError("lut_refused", path=path, reason="no line END METADATA")  # OpenColorIO would look for ever
-    return [line[1:] for line in lines if line.startswith("#")]
+    return text
 
 
 def _processor(path: Path) -> OCIO.Processor:
@@ -107,6 +109,15 @@ def _check_steps(path: Path, steps: list[OCIO.Transform]) -> None:
     others = [names.get(type(step), type(step).__name__) for step in steps if not _keeps_channels(step)]
     if others or not any(isinstance(step, OCIO.Lut1DTransform) for step in steps):
         raise LutError("lut_not_1d", path=path, steps=", ".join(others) or "no table")
+
+
+def _check_rows(path: Path, text: str, steps: list[OCIO.Transform]) -> None:
+    """Raise a LutError for more rows than the file states, where OpenColorIO leaves them out in silence."""
+    suffix, lengths = path.suffix.lower(), [step.getLength() for step in steps if isinstance(step, OCIO.Lut1DTransform)]
+    table = re.split(r"(?m)^[ \t]*\d+[ \t]*\r?$", text)[-1] if suffix == ".csp" else text  # there, behind its length
+    rows = re.findall(r"(?m)^[ \t]*[-+.\d][-+.\deE \t]*\r?$", table)
+    if suffix in (".csp", ".cube", ".spi1d") and len(rows) > lengths[-1]:
+        raise LutError("lut_rows", path=path, rows=len(rows), length=lengths[-1])
 
 
 def _keeps_channels(step: OCIO.Transform) -> bool:

@@ -15,10 +15,10 @@ from ..errors import PlateError
 from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
-from ..output_files import OutputFiles, all_or_none
+from ..output_files import OutputFiles
 from ..report.calibration import Measured, calibration_document, calibration_provenance
 from .delivery import write_luts
-from .plan import OutputPlan, plan_files
+from .plan import OutputPlan, plan_files, staged_plan
 
 
 def plan_calibration(
@@ -46,21 +46,23 @@ def is_pairs(paths: Sequence[Path]) -> bool:
 
 def write_calibration(
     plan: OutputPlan, calibration: Measured, comparison: Mapping[str, float] | None = None
-) -> dict[str, Any]:
-    """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
+) -> tuple[dict[str, Any], list[str]]:
+    """Write every file of a plan; return the document in its JSON file, with the comparison if there is one.
+
+    Return, too, the color spaces of other plates that were in the config, which holds this camera alone.
 
     Raise CRFNetError if a file cannot be written; the folder is then as it was.
     """
     files, lut = plan.files, inverse_response_lut(calibration.curve, comments=calibration_provenance(calibration))
     document = calibration_document(calibration, files, comparison)
-    with all_or_none([*files.unshared, files.config], overwrite=plan.plates.overwrite) as folder:
+    with staged_plan(plan, [*files.unshared, files.config]) as (folder, lost):
         write_luts(folder, files, lut, plan.space)
         if files.sheet:
             from ..report.calibration_sheet import draw_calibration  # loads matplotlib: optional, and slow
 
             draw_calibration(folder / files.sheet.name, calibration)
         atomic_write_text(folder / files.report.name, json_text(document), error=PlateError)
-    return document
+    return document, lost
 
 
 def response_to_compare(path: Path) -> ResponseCurve:

@@ -21,18 +21,18 @@ from ..luts.files import write_lut
 from ..luts.forward import forward_lut
 from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
-from ..output_files import OutputFiles, all_or_none, check_config_folder
+from ..output_files import OutputFiles, check_config_folder
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
 from ..plates.primaries import LinearSpace, PlatePrimaries, common_primaries
 from ..report.documents import estimate_document
 from .estimates import FileEstimate, response_lut
-from .plan import OutputPlan
+from .plan import OutputPlan, staged_plan
 
 
-def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLight) -> dict[str, Any]:
-    """Write every file of a plan, with the sheet and the JSON document; return the document.
+def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLight) -> tuple[dict[str, Any], list[str]]:
+    """Write every file of a plan, with the sheet and the JSON document; return the document, and what `deliver` does.
 
     `light` is from `estimated_light`. Each photograph is read again for its linear plate. Raise CRFNetError if a file
     cannot be written, or a photograph has changed or gone.
@@ -47,8 +47,7 @@ def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLigh
     }
     if files.sheet:
         more[files.sheet] = lambda path: _write_sheet(path, estimated)
-    deliver(plan, light, [facts.plate for facts in estimated.firsts], more=more)
-    return document
+    return document, deliver(plan, light, [facts.plate for facts in estimated.firsts], more=more)
 
 
 def deliver(
@@ -58,18 +57,17 @@ def deliver(
     *,
     more: Mapping[Path, Callable[[Path], None]] | None = None,
     progress: Progress | None = None,
-) -> tuple[Path, ...]:
-    """Write the LUTs, the config, the linear plates and `more` files of a plan, by their writers; return the files.
+) -> list[str]:
+    """Write the files of a plan, and `more` by their writers; return the color spaces that its config no longer has.
 
     `sources` are the plates of `plan.files.linear`: one file for each, or one sequence of them, whose frames `progress`
     counts, perhaps in another thread. Raise CRFNetError if a file cannot be written or OpenColorIO refuses the config;
     then, and if the callback raises, the folder is as it was.
     """
     more = more or {}
-    written = (*plan.targets, *more)
     if plan.space:
         check_config_folder(plan.files.config.parent)
-    with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
+    with staged_plan(plan, (*plan.targets, *more)) as (folder, lost), ThreadPoolExecutor(1) as pool:
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
         frames = [folder / path.name for path in plan.files.linear]
         linear = pool.submit(_write_linear, frames, sources, light, plan.plates, progress)
@@ -78,7 +76,7 @@ def deliver(
         for path, write in more.items():
             write(folder / path.name)
         linear.result()
-    return written
+    return lost
 
 
 def write_luts(folder: Path, files: OutputFiles, lut: AnyLut, space: PlateColorSpace | None) -> None:

@@ -9,6 +9,7 @@ from crfnet_core.files import file_sha256, read_json
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
 from ..errors import PlateError
+from ..messages import NOT_TEXT
 from ..output_files import SHEET_ENDING
 
 #: Whether a path leads to a folder; False if that cannot be seen, where `Path.is_dir` raises an error.
@@ -73,7 +74,7 @@ def unreadable_reason(photo: Path) -> str:
         elif photo.exists() and not photo.is_file():
             return "is a pipe or a device; give a file"
     except UnicodeEncodeError:
-        return "the name is not valid Unicode; rename it"
+        return f"the name {NOT_TEXT}"
     except OSError as problem:
         return f"cannot be read ({problem.strerror}); check its permissions"
     return ""

@@ -1,16 +1,18 @@
-"""Plan the files of an estimate: which there are, and whether they may be written."""
+"""Plan the files of an estimate: which there are, and whether they may be written; and let them appear together."""
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+from crfnet_core.locks import locked_folder
 
 from ..configs.files import load_config
 from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
 from ..errors import ConfigError, PlateError
 from ..options import OutputOptions, PlateOptions
-from ..output_files import OutputFiles, check_targets, folded
+from ..output_files import OutputFiles, all_or_none, check_targets, folded
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +22,6 @@ class OutputPlan:
     files: OutputFiles
     plates: PlateOptions  # how linear plates are written; `overwrite` holds for every file
     space: PlateColorSpace | None = None  # without its exposure and primaries; None without a config
-    lost_color_spaces: tuple[str, ...] = ()  # of other plates, in a config that is replaced
     sequence: str = ""  # the names of all frames, if the photographs are some of a sequence, as in a file rule
 
     @property
@@ -55,12 +56,19 @@ def plan_files(files: OutputFiles, photos: Sequence[Path], plates: PlateOptions,
     targets, configs = files.unshared, [files.config]
     check_targets(files.report.parent, targets, photos=photos, configs=configs, overwrite=plates.overwrite)
     portable_config([space])
-    return OutputPlan(files, plates, space, _other_spaces(files))
+    return OutputPlan(files, plates, space)
 
 
-def _other_spaces(files: OutputFiles) -> tuple[str, ...]:
-    """Return the color spaces of other plates in the config that is there; none if it cannot be read."""
-    with suppress(ConfigError):
-        plates = plates_in_config(load_config(files.config))
-        return tuple(plate.name for plate in plates if plate.name != files.color_space)
-    return ()
+@contextmanager
+def staged_plan(plan: OutputPlan, targets: Sequence[Path]) -> Iterator[tuple[Path, list[str]]]:
+    """Yield the folder to which a block writes the files of a plan: see `all_or_none`; and an empty list.
+
+    Once the files have their names, it holds the color spaces of other plates that the config no longer has.
+    """
+    lost = list[str]()
+    with ExitStack() as until_named, all_or_none(targets, overwrite=plan.plates.overwrite) as folder:
+        yield folder, lost
+        until_named.enter_context(locked_folder(folder.parent))
+        with suppress(ConfigError):  # of a config that cannot be read
+            plates = plates_in_config(load_config(plan.files.config)) if plan.space else []
+            lost += [plate.name for plate in plates if plate.name != plan.files.color_space]

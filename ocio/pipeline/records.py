@@ -23,6 +23,9 @@ from ..plates.primaries import PlatePrimaries
 #: A number that may be negative.
 Signed = Annotated[float, (-LARGEST, LARGEST)]
 
+#: How every line begins, and what is left of one that a killed run has cut short.
+_START = b'{"photograph": "'
+
 
 @dataclass(frozen=True, kw_only=True)
 class PhotographRecord:
@@ -85,9 +88,12 @@ class RecordFile:
 
     def read(self) -> dict[str, PhotographRecord]:
         """Return each photograph's last record by its place, without a line cut short; PlateError for another file."""
-        if not self.path.exists():
+        if not os.path.lexists(self.path):
             return {}
-        *lines, _ = self.path.read_bytes().split(b"\n")
+        is_file = self.path.is_file() and not self.path.is_symlink()
+        *lines, cut = self.path.read_bytes().split(b"\n") if is_file else [b"a link"]
+        if not _START.startswith(cut[: len(_START)]):
+            raise PlateError("not_records", path=self.path)
         try:
             records = [PhotographRecord.from_entry(parse_json(line)) for line in lines]
         except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError) as problem:
@@ -101,7 +107,7 @@ class RecordFile:
             earlier = self.read().get(record.place) if record.error and not record.stem else None
             if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
                 return
-            _drop_cut_line(file)
+            self._drop_cut_line(file)
             file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text in a file's name
             file.flush()
             os.fsync(file.fileno())
@@ -109,16 +115,15 @@ class RecordFile:
     @contextmanager
     def locked(self) -> Iterator[BinaryIO]:
         """Open the file for appending, with no other process in such a block meanwhile."""
-        with self.path.open("a+b") as file:
+        no_link = getattr(os, "O_NOFOLLOW", 0)  # which others may have put there
+        with open(self.path, "a+b", opener=lambda path, flags: os.open(path, flags | no_link, 0o666)) as file:
             lock(file)
             yield file
 
-
-def _drop_cut_line(file: BinaryIO) -> None:
-    """Remove what a killed run has written of its last line."""
-    if file.seek(0, os.SEEK_END) == 0:
-        return
-    file.seek(-1, os.SEEK_END)
-    if file.read() != b"\n":
-        file.seek(0)
-        file.truncate(file.read().rfind(b"\n") + 1)
+    def _drop_cut_line(self, file: BinaryIO) -> None:
+        """Remove what a killed run has written of its last line; a PlateError for another file."""
+        file.seek(max(file.seek(0, os.SEEK_END) - 1, 0))
+        if file.read() not in (b"", b"\n"):
+            self.read()
+            file.seek(0)
+            file.truncate(file.read().rfind(b"\n") + 1)

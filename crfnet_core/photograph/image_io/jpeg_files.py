@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from crfnet_core.errors import PhotoError
@@ -12,11 +13,14 @@ from crfnet_core.photograph.image_io.header_checks import check_size, damaged
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
-#: A marker with its length, behind bytes that belong to no segment, which decoders skip.
-_SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
+#: A marker with its length, behind bytes that belong to no segment, such as a scan's with its restart markers.
+_SEGMENT = re.compile(rb"\xff+([^\0\1\xd0-\xd7\xff])(..)", re.DOTALL)
 
 #: The most segments of a header, and bytes between them, which Pillow reads one by one.
 _MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20
+
+#: The most scans, each of which takes as long as the whole picture: the advice of libjpeg-turbo for untrusted files.
+_MOST_SCANS = 500
 
 _START_OF_SCAN, _END_OF_IMAGE, _JPEG_LS = 0xDA, b"\xff\xd9", 0xF7
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -55,6 +59,9 @@ def checked_jpeg(path: Path) -> JpegFile:
                 check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))
         if content.rfind(_END_OF_IMAGE, scan) < 0:
             raise damaged(path, "JPEG", "it has no end marker")
+        later = [marker for marker, *_ in islice(_segments(content, before, last=_END_OF_IMAGE[1]), _MOST_SEGMENTS)]
+        if len(later) == _MOST_SEGMENTS or later.count(_START_OF_SCAN) >= _MOST_SCANS:
+            raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"more than {_MOST_SCANS} scans")
         return JpegFile(read_jpeg_header(content), frozenset(warnings))
 
 
@@ -75,12 +82,11 @@ def _mapped(path: Path) -> Iterator[mmap.mmap]:
         yield content
 
 
-def _segments(content: mmap.mmap) -> Iterator[tuple[int, int, int, int]]:
-    """Yield each segment up to the first scan: its marker, the stray bytes in front, where its payload begins, ends."""
-    end = 2
+def _segments(content: mmap.mmap, end: int = 2, *, last: int = _START_OF_SCAN) -> Iterator[tuple[int, int, int, int]]:
+    """Yield segments, up to a marker: each one's marker, the stray bytes in front, where its payload begins, ends."""
     while segment := _SEGMENT.search(content, end):
         begin, stray = segment.end(), segment.start() - end
         end = segment.start(2) + max(2, int.from_bytes(segment[2], "big"))
         yield segment[1][0], stray, begin, end
-        if segment[1][0] == _START_OF_SCAN:
+        if segment[1][0] == last:
             return

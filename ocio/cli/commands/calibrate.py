@@ -10,7 +10,7 @@ from ...options import OutputOptions
 from ...report.calibration import Measured, calibration_lines, comparison_lines
 from ...report.words import file_lines
 from ..remedies import CommandError
-from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
+from .printing import lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -21,16 +21,16 @@ def run(arguments: argparse.Namespace) -> None:
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
     calibration = _measured(arguments)
     comparison = calibration.compare(other) if other else None
-    document = pipeline.write_calibration(plan, calibration, comparison)
+    document, lost = pipeline.write_calibration(plan, calibration, comparison)
     lines = [
         *calibration_lines(calibration),
         *(comparison_lines(comparison) if comparison else []),
         "",
         f"Written to {arguments.out}:",
         *file_lines(plan.files, sheet="the curve, the points of every file and their residuals"),
-        *lost_lines(plan),
+        *lost_lines(plan.files.config, lost),
     ]
-    print_result(document | lost_document(plan), lines, as_json=arguments.json)
+    print_result(document | ({"dropped": lost} if lost else {}), lines, as_json=arguments.json)
 
 
 def _measured(arguments: argparse.Namespace) -> Measured:

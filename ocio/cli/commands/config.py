@@ -24,7 +24,7 @@ def _add(arguments: argparse.Namespace) -> None:
     plates = [asdict(plate) for plate in derived.plates]
     document = {"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)}
     reason = "many cameras give such names, several plates have it, or the config has no space for it"
-    notes = [f"note: no file rule for {pattern}: {reason}" for pattern in derived.without_rule]
+    notes = [f"note: file rules give {pattern} no space of its own: {reason}" for pattern in derived.without_rule]
     lines = [f"Written: {derived.path}", *_plate_lines(derived.plates), *notes]
     print_result(document, lines, as_json=arguments.json)
 

@@ -8,6 +8,9 @@ from pathlib import Path
 from crfnet_core.estimate.options import AnalysisOptions
 
 from ... import pipeline
+from ...configs.files import load_config
+from ...configs.plate_color_space import plates_in_config
+from ...defaults import CONFIG_NAME
 from ...errors import PlateError
 from ...options import EstimateOptions, PlateOptions, stated_device
 from ...pipeline.batch import Batch
@@ -57,8 +60,13 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
         )
     document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
     lines = [record.line for record in records]
-    more = ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
-    print_result(document, [*lines, *more], as_json=arguments.json)
+    configs = sorted({batch.out / record.folder / CONFIG_NAME for record in records if record.lut})
+    plates = [plate for path in configs if path.exists() for plate in plates_in_config(load_config(path))]
+    if names := [plate.name for plate in plates if plate.name not in plate.rules.values()]:
+        document["without_rule"] = names
+        lines.append(f"note: no file rule leads to {', '.join(names)}: several plates have files of these names")
+    lines += ["", f"All results in {batch.out}, one JSON line each: {batch.records.path}"]
+    print_result(document, lines, as_json=arguments.json)
     if failed := [record for record in records if record.error]:
         raise PlateError("photographs_failed", failed=len(failed), count=len(records), problem=failed[0].error)
     return [record.verdict for record in records]

@@ -13,7 +13,7 @@ from ...options import OutputOptions
 from ...report import words
 from ..arguments.parts import NOT_TRUSTED
 from .each import check_each, estimate_options, plate_options, run_each
-from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
+from .printing import lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -44,9 +44,10 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
             loader.submit(import_module, "crfnet.report.sheet")  # matplotlib, on another core
         estimated = pipeline.estimate_files(sources, options, progress=progress)
     light = pipeline.estimated_light(estimated, plan.plates)
-    document = pipeline.deliver_estimate(plan, estimated, light)
-    printed = {"folder": str(arguments.out), "estimates": [document], **lost_document(plan)}
-    print_result(printed, _lines(estimated, document, plan), as_json=arguments.json)
+    document, lost = pipeline.deliver_estimate(plan, estimated, light)
+    printed = {"folder": str(arguments.out), "estimates": [document], **({"dropped": lost} if lost else {})}
+    lines = [*_lines(estimated, document, plan), *lost_lines(plan.files.config, lost)]
+    print_result(printed, lines, as_json=arguments.json)
     return estimated.estimate.verdict
 
 
@@ -61,5 +62,4 @@ def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: 
         "",
         f"Written to {plan.files.report.parent}:",
         *words.file_lines(plan.files),
-        *lost_lines(plan),
     ]

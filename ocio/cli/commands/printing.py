@@ -10,11 +10,11 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tqdm import tqdm
 
@@ -23,9 +23,6 @@ from crfnet_core.staging import is_own_folder
 from crfnet_core.types import Progress
 
 from ..streams import shown
-
-if TYPE_CHECKING:
-    from ...pipeline.plan import OutputPlan
 
 #: Seconds between two lines of progress without a terminal.
 LINE_SECONDS = 60
@@ -74,16 +71,11 @@ def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: 
         sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
-def lost_document(plan: OutputPlan) -> dict[str, Any]:
-    """Return the names of plates that a replaced config has no more, for JSON; empty without any."""
-    return {"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}
-
-
-def lost_lines(plan: OutputPlan) -> list[str]:
-    """Return a warning of these plates, with the command that brings them back."""
-    if not (names := plan.lost_color_spaces):
+def lost_lines(config: Path, names: Sequence[str]) -> list[str]:
+    """Return a warning of plates that a replaced config has no more, with the command that brings them back."""
+    if not names:
         return []
-    which, config = f'"{names[0]}"' + f" and {len(names) - 1} more" * bool(names[1:]), plan.files.config
+    which = f'"{names[0]}"' + f" and {len(names) - 1} more" * bool(names[1:])
     remedy = f"crfnet config add --base {shlex.quote(str(config))} --out FOLDER ESTIMATE, the JSON of the other"
     return [
         f"Warning: {config.name} was replaced and no longer has {which}; a config with both is written by {remedy}."

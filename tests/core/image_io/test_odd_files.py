@@ -2,6 +2,7 @@
 
 import io
 import struct
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -205,6 +206,17 @@ def test_stray_bytes_between_segments_of_a_jpeg(tmp_path):
     for stray in (b"\0\0", b"\0\1\2", b"\xff\0\7"):
         path.write_bytes(whole.replace(b"\xff\xdb", stray + b"\xff\xdb", 1))
         np.testing.assert_array_equal(read_codes(path).codes, expected)
+
+
+def test_a_jpeg_of_hundreds_of_scans_is_refused_before_decoding(tmp_path):
+    """Each takes as long as the whole picture, however short it is."""
+    file = io.BytesIO()
+    Image.new("RGB", (64, 64), (200, 100, 50)).save(file, "JPEG", progressive=True, restart_marker_blocks=4)
+    begin, path = (whole := file.getvalue()).rindex(b"\xff\xda"), tmp_path / "a.jpg"
+    for more, is_read in ((400, True), (500, False)):
+        path.write_bytes(whole[:begin] + whole[begin:-2] * more + whole[-2:] + b"\xff\xda\0\2" * 500)
+        with nullcontext() if is_read else refused(PhotoError, "coding_not_read", problem="more than 500 scans"):
+            read_metadata(path)
 
 
 def test_a_later_jfif(tmp_path):

@@ -1,16 +1,20 @@
 import json
+import os
 import shutil
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 import pytest
 
+from crfnet import pipeline
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS, read_lut
+from crfnet_core import staging
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
+from tests.helpers.looks import write_look
 
 FILES = {*(f"plate{suffix}" for suffix in WRITERS), "config.ocio", "plate_linear.exr", "plate_sheet.png", "plate.json"}
 
@@ -156,6 +160,27 @@ def test_color_spaces_that_a_replaced_config_no_longer_has_are_named(estimate, c
     assert {"CRF plate", "CRF other"} < set(config.getColorSpaceNames())
     printed = estimate(plate, "--no-linear", "--overwrite", "--json").out
     assert json.loads(printed)["dropped"] == ["CRF other"]
+
+
+def test_a_color_space_that_another_process_has_just_written_is_named_as_lost(estimate, plate, out, monkeypatch):
+    """The config is looked at as it is replaced, and then no other process may write one."""
+    fcntl = pytest.importorskip("fcntl", reason="Windows locks no folders")
+    publish, light = staging._publish, pipeline.estimated_light
+
+    def light_later(*arguments):
+        write_look(out, ["b.jpg"])
+        monkeypatch.setattr(staging, "_publish", publish_alone)
+        return light(*arguments)
+
+    def publish_alone(*arguments, **options):
+        folder = os.open(out, os.O_RDONLY)
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.close(folder)
+        publish(*arguments, **options)
+
+    monkeypatch.setattr(pipeline, "estimated_light", light_later)
+    assert 'no longer has "CRF b"' in estimate(plate, "--no-linear", "--no-sheet", "--overwrite").out
 
 
 @pytest.mark.parametrize("content", [b"no config", b"ocio_profile_version: \xe4\xff"])

@@ -42,6 +42,9 @@ def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
     assert done.returncode == BAD_INPUT
     assert done.stderr == "crfnet: error: a file's name is not valid Unicode; rename it\n"
     assert not (tmp_path / "out").exists()
+    environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.stderr.endswith("is not text in ascii, which the environment states; set LC_ALL=C.UTF-8\n")
 
 
 def test_a_reader_that_leaves_is_no_error_message(look):

@@ -14,7 +14,7 @@ from crfnet.errors import ConfigError, PlateError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.configs import converted, loaded, rule_names
+from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look
 from tests.helpers.refusals import refused
@@ -57,9 +57,17 @@ def test_all_of_a_built_in_config_is_kept_the_plate_is_right_in_aces_and_only_it
     expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
     np.testing.assert_allclose(converted(result, NAME, "aces_interchange", pixels), expected, atol=1e-5)
     assert [space_of(result, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
-    for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
+    for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR"):
         assert result.getColorSpace(space_of(result, path)).getName().startswith("Linear Rec.709")
-    for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
+    for path in (
+        "plate01.0001.exr",
+        "x/b.jpg",
+        "plate01.png",
+        "plate02.jpg",
+        "aplate01.jpg",
+        "plate01.jpg.exr",
+        "b.mov",
+    ):
         assert space_of(result, path) == space_of(base, path)
 
 
@@ -68,8 +76,8 @@ class TestBase:
         before = tree(studio.parent)
         done = add(studio, tmp_path / "new", small_look)
         assert tree(studio.parent) == before
-        assert listed(tmp_path / "new") == ["config.ocio", "plate01.spi1d"]
-        assert done.files == (tmp_path / "new" / "config.ocio", tmp_path / "new" / "plate01.spi1d")
+        assert listed(tmp_path / "new") == [path.name for path in done.files]
+        assert [path.parent for path in done.files] == [tmp_path / "new"] * 2
         result = loaded(done.path)
         assert all_names(result) == all_names(loaded(studio))
         assert_same(conversions(result), conversions(loaded(studio)))
@@ -116,6 +124,15 @@ class TestBase:
         assert_same(conversions(result), conversions(loaded(studio)))
         np.testing.assert_allclose(converted(result, "film", "scene_linear", CODES), THIRD_LUT.apply(CODES), atol=1e-6)
 
+    def test_a_plates_lut_stays_its_own_for_every_value_of_a_variable(self, studio, small_look, tmp_path, monkeypatch):
+        """Else the LUT of the plate's name that another show has would change the plate."""
+        result = add(studio, tmp_path / "new", small_look).path
+        (tmp_path / "b" / "luts").mkdir(parents=True)
+        write_lut(tmp_path / "b" / "luts" / "plate01.spi1d", THIRD_LUT)
+        monkeypatch.setenv("SHOW", str(tmp_path / "b"))
+        light = converted(loaded(result), NAME, "lin_rec709_scene", CODES)
+        np.testing.assert_allclose(light, LUT.apply(CODES), atol=1e-5)
+
     @pytest.mark.parametrize("path", ["luts", "../link/../luts"])
     def test_a_link_is_a_base_of_its_own(self, studio, small_look, tmp_path, path):
         """OpenColorIO looks for files next to it, and takes ".." out of names."""
@@ -133,6 +150,7 @@ class TestBase:
     @pytest.mark.parametrize("name", ["film", "FILM"])
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
         """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
+        studio.write_text(studio.read_text().replace("$SHOW/", ""))
         look = write_look(tmp_path / "look", [f"{name}.jpg"])
         done = add(studio, tmp_path / "new", look)
         assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
@@ -143,7 +161,7 @@ class TestBase:
 
     @pytest.mark.parametrize("name", ["plate01.spi1d", "sub/PLATE01.spi1d"])
     def test_a_lut_that_the_base_misses_is_not_found_in_a_plates(self, studio, small_look, tmp_path, name):
-        studio.write_text(studio.read_text().replace("film.spi1d", name))
+        studio.write_text(studio.read_text().replace("$SHOW/", "").replace("film.spi1d", name))
         assert listed(add(studio, tmp_path / "new", small_look).path.parent)[1] == "plate01 (look).spi1d"
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
@@ -268,30 +286,3 @@ class TestFolder:
         (tmp_path / "show").rename(tmp_path / "elsewhere")
         result = converted(loaded(tmp_path / "elsewhere" / "config.ocio"), NAME, "lin_rec709_scene", CODES)
         np.testing.assert_allclose(result, LUT.apply(CODES), atol=tolerance.plate)
-
-
-class TestRules:
-    def test_a_cameras_own_name_gets_no_rule(self, tmp_path):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]))
-        assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB - Display"
-        assert space_of(loaded(done.path), "img_0042_linear.exr") == "Linear Rec.709 (sRGB)"
-        assert done.without_rule == ("IMG_0042.JPG",)
-
-    @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
-    def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
-        look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
-        names = ["skyline_001.png", "skyline_090.png"]
-        other = write_look(tmp_path / "other", names, interop_id=interop_id, sequence="skyline_#.png")
-        result = loaded(add(STUDIO, tmp_path / "show", look, other).path)
-        assert space_of(result, "skyline_050.png") == "CRF skyline_001"
-        assert {space_of(result, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
-        assert space_of(result, "sky.v2.png") == "sRGB - Display"
-        linear = result.getColorSpace(interop_id).getName()
-        for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_050.exr"):
-            assert space_of(result, path) == linear
-
-    @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
-    def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
-        assert rule_names(loaded(done.path))[:1] == [NAME]
-        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"

@@ -13,8 +13,8 @@ from crfnet.configs.file_rules import (
     rule_regex,
 )
 from crfnet.configs.portable import portable_config
-from tests.helpers.configs import loaded
-from tests.helpers.looks import STUDIO, add, space_of, write_look
+from tests.helpers.configs import loaded, rule_names
+from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
 
 
 def matched_space(pattern, path):
@@ -103,7 +103,7 @@ def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path
     (config := loaded(studio)).removeColorSpace("Linear AdobeRGB")
     studio.write_text(config.serialize())
     done = add(studio, tmp_path / "new", write_look(tmp_path / "look", interop_id="lin_adobergb_scene"))
-    assert done.without_rule == ("plate01_linear.exr", "plate01.#.exr")
+    assert done.without_rule == ("plate01_linear.exr",)
 
 
 @pytest.mark.parametrize("order", ["abc", "acb", "bca", "cab"])
@@ -134,3 +134,30 @@ def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
     result = loaded(add(STUDIO, tmp_path / "show", look).path)
     assert space_of(result, "/x/clip.mp4") == "CRF clip"
     assert [space_of(result, path) for path in ("clip.0001.exr", "clip_linear.exr")] == ["ACEScg"] * 2
+
+
+class TestRules:
+    def test_a_cameras_own_name_gets_no_rule(self, tmp_path):
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]))
+        assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB - Display"
+        assert space_of(loaded(done.path), "img_0042_linear.exr") == "Linear Rec.709 (sRGB)"
+        assert done.without_rule == ("IMG_0042.JPG",)
+
+    @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
+    def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
+        look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
+        names = ["skyline_001.png", "skyline_090.png"]
+        other = write_look(tmp_path / "other", names, interop_id=interop_id, sequence="skyline_#.png")
+        result = loaded(add(STUDIO, tmp_path / "show", look, other).path)
+        assert space_of(result, "skyline_050.png") == "CRF skyline_001"
+        assert {space_of(result, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
+        assert space_of(result, "sky.v2.png") == "sRGB - Display"
+        linear = result.getColorSpace(interop_id).getName()
+        for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_050.exr"):
+            assert space_of(result, path) == linear
+
+    @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
+    def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
+        assert rule_names(loaded(done.path))[:1] == [NAME]
+        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"

@@ -37,7 +37,7 @@ def test_folder_document_and_lut_are_one_look(tmp_path):
     assert len({look.space for look in looks}) == 1
     space = looks[0].space
     assert (space.name, space.exposure, space.file_patterns) == ("CRF plate01", 1.5, ("plate01.jpg",))
-    assert (space.linear_patterns, space.linear_primaries) == (("plate01_linear.exr", "plate01.#.exr"), AP1)
+    assert (space.linear_patterns, space.linear_primaries) == (("plate01_linear.exr",), AP1)
     assert [(look.folder, look.lut == LUT) for look in looks] == [("look", True)] * 3
 
 

@@ -103,6 +103,7 @@ MATRIX = '<Matrix inBitDepth="32f" outBitDepth="32f"><Array dim="3 3">1 0 0 0 2 
         *((f"a.{make.__name__}", make(rows=ROWS[::-1]), "lut_not_increasing") for make in (clf, cube, spi1d, csp)),
         *((f"a.{make.__name__}", make(rows=["0", "nan", *ROWS[2:]]), "lut_not_increasing") for make in (clf, cube)),
         *((f"a.{make.__name__}", make(rows=COMMAS), "lut_not_increasing") for make in (cube, spi1d)),
+        *((f"a.{make.__name__}", make() + "1.5 1.5 1.5\n", "lut_rows") for make in (cube, spi1d, csp)),
         ("a.cube", cube(rows=("-3.4e38", "0", "1", "2", "3.4e38")), "lut_invalid"),
     ],
 )
