@@ -225,3 +225,16 @@ def test_warm_photographs_are_not_limited_range():
     warm = np.concatenate([codes * 255 / 235, codes, codes * 0.777], axis=2)
     assert is_limited_range(Levels.from_pixels(quantized(np.repeat(warm @ LUMA.reshape(3, 1), 3, axis=2))))
     assert not is_limited_range(Levels.from_pixels(quantized(warm)))
+
+
+def test_codes_that_go_on_below_16_in_one_channel_are_not_limited_range():
+    codes = np.random.default_rng(0).normal(125, 60, (400, 400, 1)).clip(16, 235) / 255
+    gray = np.repeat(codes, 3, axis=2)
+    assert is_limited_range(Levels.from_pixels(quantized(gray)))
+    assert not is_limited_range(Levels.from_pixels(quantized(np.where(codes < 0.15, gray * (1, 1, 0), gray))))
+
+
+def test_more_samples_beyond_16_and_235_than_at_them_are_not_limited_range():
+    codes = np.random.default_rng(0).uniform(28, 175, 160_000)
+    codes[:180] = np.repeat([5, 16, 235, 250], (60, 30, 30, 60))
+    assert not is_limited_range(Levels.from_pixels(quantized(np.repeat(codes.reshape(400, 400, 1), 3, axis=2) / 255)))
