@@ -122,7 +122,8 @@ def input_warnings(recognition: Recognition | None, origins: Sequence[FileOrigin
 
 def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Prior:
     """Return the prior shifted by what the files and the user say, and by the levels of log footage."""
-    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
+    log = 0.0 if any(origin.is_phone_still for origin in origins) else log_factor(levels)
+    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log})
     return replace(informed, plain=0.0) if any(origin.names_device for origin in origins) else informed
 
 

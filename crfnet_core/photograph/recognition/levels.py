@@ -34,8 +34,8 @@ MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 #: The least fraction of luma near either, of which a part as large as this may lie beyond, by ringing of compression.
 LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 
-#: The largest fractions of samples beyond the codes of black and white, where luma ends: channels of saturated colors go
-#: beyond their luma, bright ones more than dark ones.
+#: The largest fractions of samples below the codes of black and above the codes of white: channels of saturated colors
+#: go beyond their luma, of bright ones more than of dark ones.
 MOST_BELOW, MOST_ABOVE = 0.01, 0.02
 
 #: Bins in which a photograph's histogram is smooth, the least range of pictures to ask, and the unevenness of
