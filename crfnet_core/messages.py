@@ -118,6 +118,7 @@ SENTENCES: Mapping[str, str] = {
     "few_levels": "few levels: the codes pile up at some levels, with little between them, as in drawn and posterized"
     " pictures",
     "few_levels_advice": "give a photograph with all its levels",
+    "mostly_ends": "more than half of all samples are exactly black or white, as in mattes, and no camera is named",
     "flat_frame": "a flat frame: its brightness has no range, so no response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",

@@ -42,6 +42,9 @@ MOST_BELOW, MOST_ABOVE = 0.01, 0.02
 #: pictures of few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
 SMOOTH_BINS, LEAST_RANGE, FEW_LEVELS = (32, 64), 0.4, 0.3
 
+#: The largest fraction of black and white samples in a photograph whose camera is not named; 104 have at most 0.29.
+MOST_AT_ENDS = 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class Levels:
@@ -94,6 +97,11 @@ def has_few_levels(levels: Levels) -> bool:
     """Return whether the samples of a picture of some range pile up at a few levels: Eq. L.5 of docs/METHOD.md."""
     is_wide = levels.white - levels.black >= LEAST_RANGE
     return is_wide and any(_unevenness(levels.histogram, bins) > FEW_LEVELS for bins in SMOOTH_BINS)
+
+
+def is_mostly_ends(levels: Levels) -> bool:
+    """Return whether most samples are exactly black or white, as in mattes and passes of renders."""
+    return float(levels.histogram[[0, -1]].sum()) > MOST_AT_ENDS * float(levels.histogram.sum())
 
 
 def is_limited_range(levels: Levels) -> bool:

@@ -11,7 +11,7 @@ from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range
+from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range, is_mostly_ends
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 from crfnet_core.response.log_curves import COLOR_SPACES
 
@@ -65,6 +65,8 @@ def recognize(
         return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
     if has_few_levels(levels):
         return _recognized(Kind.FEW_LEVELS, Notice("few_levels"), Notice("few_levels_advice"))
+    if is_mostly_ends(levels) and not any(origin.names_device for origin in origins):
+        return _recognized(Kind.FEW_LEVELS, Notice("mostly_ends"), Notice("few_levels_advice"))
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)

@@ -84,6 +84,15 @@ def test_noise_is_not_to_be_trusted_whoever_says_what_took_it(network, kind, dev
     assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.FLAT)
 
 
+@pytest.mark.parametrize(("camera", "verdict"), [({}, "do not trust"), ({"make": "Canon", "model": "EOS R"}, "usable")])
+def test_a_mostly_black_picture_is_a_matte_unless_a_camera_is_named(network, plate, camera, verdict):
+    pixels = read_photo(plate).pixels.copy()
+    pixels[:, : int(0.55 * pixels.shape[1])] = 0
+    metadata = FileMetadata(width=pixels.shape[1], height=pixels.shape[0], file_format="PNG", **camera)
+    estimate = estimated(pixels, network, metadata=metadata)
+    assert (estimate.verdict, bool(estimate.recognition)) == (verdict, not camera)
+
+
 def test_a_screenshot_is_not_to_be_trusted(network):
     estimate = estimated(screenshot(), network, metadata=FileMetadata(width=960, height=640, file_format="PNG"))
     assert estimate.verdict is Verdict.DO_NOT_TRUST
