@@ -127,12 +127,10 @@ SENTENCES: Mapping[str, str] = {
     " video",
     "limited_range_advice": "expand the range first: when ffmpeg extracts frames, with its filter"
     " scale=in_range=limited:out_range=full",
-    "log_footage": "log footage, or haze, which looks alike: black lies at code {code} of 255; by its levels the"
-    " curve may be {curves}",
+    "log_footage": "log footage, or haze: black lies at code {code} of 255; by its levels the curve may be {curves}",
     "log_footage_advice": "give it the color space of the log curve that the camera was set to, which its menu or the"
     " clip's metadata say",
-    "log_footage_of_maker": "log footage, or haze, which looks alike: black lies at code {code} of 255; its maker's"
-    " curve is {curve}",
+    "log_footage_of_maker": "log footage, or haze: black lies at code {code} of 255; its maker's curve is {curve}",
     "log_footage_safest": "if nothing says, {curve} is safest: its light may be off by {stops} stop",
     "log_footage_spaces": "give it the color space of the log curve that the camera was set to, which its menu or the"
     " clip's metadata say, in ACES configs {spaces}",

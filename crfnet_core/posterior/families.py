@@ -33,9 +33,6 @@ IN_CAMERA = (Family.PHONE, Family.COMPACT, Family.CAMERA)
 #: network states how likely these make a photograph, against an ordinary response, in this order.
 UNUSUAL = (Family.LINEAR, Family.LOG, Family.UNEXPLAINED)
 
-#: Probability of the unusual families above which an answer is not to be trusted.
-UNUSUAL_LIMIT = 0.5
-
 #: Groups of families in words for people, in the order in which they are asked.
 FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
     IN_CAMERA: "a camera's own rendering",
@@ -49,7 +46,7 @@ FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
 
 def is_unusual(families: Mapping[Family, float]) -> bool:
     """Return whether the unusual families are together more probable than all others, so that no answer is trusted."""
-    return sum(families.get(family, 0.0) for family in UNUSUAL) > UNUSUAL_LIMIT
+    return sum(families.get(family, 0.0) for family in UNUSUAL) > 0.5
 
 
 @dataclass(frozen=True)

@@ -44,10 +44,9 @@ class ResponseBank:
     @cache
     def plain(cls) -> ResponseBank:
         """Return the responses of pictures without a camera's tone curve: gammas from 1, sRGB, Rec.709 and HLG."""
-        powers = [UNIFORM ** (1 / power) for power in (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)]
-        others = [encode(UNIFORM) for encode in (srgb_encode, rec709_encode, hlg_encode)]
-        encoded = np.stack([*powers, *others]).astype(np.float32)
-        return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
+        encoded = [UNIFORM ** (1 / power) for power in (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)]
+        encoded += [encode(UNIFORM) for encode in (srgb_encode, rec709_encode, hlg_encode)]
+        return cls(np.stack(encoded).astype(np.float32), (Family.UNEXPLAINED,) * len(encoded))
 
     @classmethod
     @cache

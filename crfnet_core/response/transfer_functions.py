@@ -22,4 +22,4 @@ def hlg_encode(linear: ArrayLike) -> Float64Array:
     """Return the Hybrid Log-Gamma encoding (ITU-R BT.2100) of linear values in [0, 1], of the same shape."""
     linear = np.asarray(linear, dtype=np.float64)
     a, b, c = 0.17883277, 0.28466892, 0.55991073
-    return np.where(linear <= 1 / 12, np.sqrt(3 * linear), a * np.log(np.maximum(12 * linear, 1) - b) + c)
+    return np.where(linear <= 1 / 12, (3 * linear) ** 0.5, a * np.log(np.maximum(12 * linear, 1) - b) + c)

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -99,7 +97,7 @@ def test_plain_responses_widen_the_errors_and_leave_the_answer(bank, lookalikes)
 def test_a_plain_encoding_of_a_standard_is_found_among_the_plain_responses(bank, encode):
     true = encode(UNIFORM)
     evidence = evidence_for(EmorBasis.load().project(true), precision=3)
-    posterior = Posterior.from_evidences(bank, replace(even_prior(), plain=0.2), [evidence])
+    posterior = Posterior.from_evidences(bank, Prior("p", even_prior().shares, 1.0, 0.0, 0.2), [evidence])
     np.testing.assert_allclose(ResponseBank.plain().brightness[posterior.plain.argmax()], true, atol=1e-6)
 
 
