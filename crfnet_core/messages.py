@@ -118,6 +118,7 @@ SENTENCES: Mapping[str, str] = {
     "few_levels": "few levels: the codes pile up at some levels, with little between them, as in drawn and posterized"
     " pictures",
     "few_levels_advice": "give a photograph with all its levels",
+    "mostly_ends": "more than half of all samples are exactly black or white, as in mattes, and no camera is named",
     "flat_frame": "a flat frame: its brightness has no range, so no response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
@@ -126,10 +127,10 @@ SENTENCES: Mapping[str, str] = {
     " video",
     "limited_range_advice": "expand the range first: when ffmpeg extracts frames, with its filter"
     " scale=in_range=limited:out_range=full",
-    "log_footage": "log footage: black lies at code {code} of 255; by its levels the curve may be {curves}",
+    "log_footage": "log footage, or haze: black lies at code {code} of 255; by its levels the curve may be {curves}",
     "log_footage_advice": "give it the color space of the log curve that the camera was set to, which its menu or the"
     " clip's metadata say",
-    "log_footage_of_maker": "log footage: black lies at code {code} of 255; its maker's curve is {curve}",
+    "log_footage_of_maker": "log footage, or haze: black lies at code {code} of 255; its maker's curve is {curve}",
     "log_footage_safest": "if nothing says, {curve} is safest: its light may be off by {stops} stop",
     "log_footage_spaces": "give it the color space of the log curve that the camera was set to, which its menu or the"
     " clip's metadata say, in ACES configs {spaces}",

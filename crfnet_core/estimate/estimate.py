@@ -17,15 +17,8 @@ from crfnet_core.network.pooling import agreeing
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Levels, Recognition, log_factor, recognize
 from crfnet_core.photograph.thumbnail import is_noise, scene_similarities
-from crfnet_core.posterior import (
-    Family,
-    Posterior,
-    Prior,
-    ResponseBank,
-    Verdict,
-    independent_fraction,
-    metadata_factors,
-)
+from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict, independent_fraction
+from crfnet_core.posterior.factors import metadata_factors
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Progress
 
@@ -122,7 +115,8 @@ def input_warnings(recognition: Recognition | None, origins: Sequence[FileOrigin
 
 def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Prior:
     """Return the prior shifted by what the files and the user say, and by the levels of log footage."""
-    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
+    log = 0.0 if any(origin.is_phone_still for origin in origins) else log_factor(levels)
+    informed = prior.reweighted(metadata_factors(origins)).reweighted({Family.LOG: log})
     return replace(informed, plain=0.0) if any(origin.names_device for origin in origins) else informed
 
 
@@ -149,13 +143,10 @@ def _warnings(
     cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
     if len(cameras) > 1:
         warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
-    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        warnings.append(Notice("clipped"))
-    if is_answer_of_windows:
-        warnings.append(Notice("answer_of_windows"))
-    windows = [window for photograph in photographs for window in photograph.windows]
-    if not any(window.covers_range for window in windows):
-        warnings.append(Notice("narrow_range"))
-    if all(photograph.is_gray for photograph in photographs):
-        warnings.append(Notice("gray"))
-    return tuple(warnings)
+    holds = {
+        "clipped": np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED,
+        "answer_of_windows": is_answer_of_windows,
+        "narrow_range": not any(window.covers_range for photograph in photographs for window in photograph.windows),
+        "gray": all(photograph.is_gray for photograph in photographs),
+    }
+    return (*warnings, *(Notice(code) for code in holds if holds[code]))

@@ -44,9 +44,14 @@ FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
 }
 
 
+def is_unusual(families: Mapping[Family, float]) -> bool:
+    """Return whether the unusual families are together more probable than all others, so that no answer is trusted."""
+    return sum(families.get(family, 0.0) for family in UNUSUAL) > 0.5
+
+
 @dataclass(frozen=True)
 class LikelyKind:
-    """The most probable kind of response."""
+    """The most probable kind of response: of the unusual ones if `is_unusual`, else of the others."""
 
     families: tuple[Family, ...]  # the families that make up the kind
     words: str  # the kind in words
@@ -60,6 +65,7 @@ class LikelyKind:
         kinds = [
             cls(members, words, sum(families.get(family, 0.0) for family in members))
             for members, words in FAMILY_WORDS.items()
+            if (members[0] in UNUSUAL) is is_unusual(families)
         ]
         return max(kinds, key=lambda kind: kind.probability)
 

@@ -19,7 +19,7 @@ class LogWeights:
 
     bank: ResponseBank
     responses: Float64Array  # (N,): of the responses of the bank
-    plain: Float64Array  # (10,): of `ResponseBank.plain`
+    plain: Float64Array  # (11,): of `ResponseBank.plain`
     unexplained: float  # of anything else
 
     @classmethod

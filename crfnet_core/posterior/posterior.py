@@ -32,7 +32,7 @@ class Posterior:
     weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
     unexplained: float  # the probability that none of them is, plain responses included
     prior: Prior | None  # the knowledge before photographs were seen; None if there were none
-    #: (10,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
+    #: (11,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
     #: count in the expected errors and the band, and among the unexplained, and never in the answer.
     plain: Float64Array
     network_answer: Float64Array | None  # (11,): the network's own answer in EMoR weights; None of evidence on fewer

@@ -12,7 +12,7 @@ from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.response.curve import SAMPLES, UNIFORM
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
-from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.response.transfer_functions import hlg_encode, rec709_encode, srgb_encode
 from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
@@ -43,10 +43,10 @@ class ResponseBank:
     @classmethod
     @cache
     def plain(cls) -> ResponseBank:
-        """Return the responses of pictures without a camera's tone curve: gammas from 1 (linear), sRGB and Rec.709."""
-        powers = [UNIFORM ** (1 / power) for power in (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)]
-        encoded = np.stack([*powers, srgb_encode(UNIFORM), rec709_encode(UNIFORM)]).astype(np.float32)
-        return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
+        """Return the responses of pictures without a camera's tone curve: gammas from 1, sRGB, Rec.709 and HLG."""
+        encoded = [UNIFORM ** (1 / power) for power in (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)]
+        encoded += [encode(UNIFORM) for encode in (srgb_encode, rec709_encode, hlg_encode)]
+        return cls(np.stack(encoded).astype(np.float32), (Family.UNEXPLAINED,) * len(encoded))
 
     @classmethod
     @cache

@@ -3,14 +3,11 @@
 from enum import StrEnum
 from typing import Self
 
-from crfnet_core.posterior.families import UNUSUAL
+from crfnet_core.posterior.families import is_unusual
 from crfnet_core.posterior.posterior import Posterior
 
 #: The largest expected shape error, in stops, of a usable answer.
 USABLE_STOPS = 0.3
-
-#: Probability of the unusual families above which an answer is not to be trusted.
-UNUSUAL_LIMIT = 0.5
 
 
 class Verdict(StrEnum):
@@ -22,7 +19,7 @@ class Verdict(StrEnum):
     @classmethod
     def from_posterior(cls, posterior: Posterior) -> Self:
         """Return the verdict on the answer of a posterior."""
-        if sum(posterior.families[family] for family in UNUSUAL) > UNUSUAL_LIMIT:
+        if is_unusual(posterior.families):
             return cls.DO_NOT_TRUST
         return cls.from_shape_error(posterior.expected_shape_error)
 

@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, UNIFORM, ResponseCurve, nearest_increasing
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.response.transfer_functions import hlg_encode, rec709_encode, srgb_encode
 from tests.helpers.refusals import refused
 
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
@@ -27,6 +27,8 @@ def test_the_transfer_functions_of_standards_are_those_of_colour_science(toleran
     models = pytest.importorskip("colour", reason="colour-science comes with the test extra").models
     np.testing.assert_allclose(srgb_encode(UNIFORM), models.eotf_inverse_sRGB(UNIFORM), atol=tolerance.exact)
     np.testing.assert_allclose(rec709_encode(UNIFORM), models.oetf_BT709(UNIFORM), atol=tolerance.exact)
+    np.testing.assert_allclose(hlg_encode(UNIFORM[90:]), models.oetf_BT2100_HLG(UNIFORM[90:]), atol=1e-8)
+    np.testing.assert_allclose(hlg_encode([0, 1 / 48, 1 / 12]), [0, 0.25, 0.5])
 
 
 @given(weights)

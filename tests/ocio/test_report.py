@@ -92,9 +92,11 @@ def test_luts_say_how_far_to_trust_them(estimate):
         ({Family.LINEAR: 0.8, Family.CAMERA: 0.2}, "nearly linear: do not trust, 80 %"),
         ({Family.LOG: 1.0}, "log-like: do not trust, over 99 %"),
         ({Family.CAMERA: 0.5, Family.LOG: 0.5}, "a camera's own rendering, 50 %"),
+        ({Family.UNEXPLAINED: 0.48, Family.CAMERA: 0.3, Family.FILM: 0.22}, "a camera's own rendering, 30 %"),
+        ({Family.CAMERA: 0.45, Family.LOG: 0.3, Family.LINEAR: 0.25}, "log-like: do not trust, 30 %"),
     ],
 )
-def test_the_likely_kind(estimate, families, words):
+def test_the_likely_kind_is_of_the_side_that_the_verdict_takes(estimate, families, words):
     assert str(estimate(families=families).likely_kind) == words
 
 

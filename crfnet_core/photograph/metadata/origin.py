@@ -82,6 +82,11 @@ class FileOrigin:
         return bool(self.camera) or self.has_stated_device
 
     @property
+    def is_phone_still(self) -> bool:
+        """Whether the file is a still of a phone: phones write log into movies only."""
+        return self.device is Device.PHONE and not self.has_stated_device and self.encoding is Encoding.UNKNOWN
+
+    @property
     def is_sent_copy(self) -> bool:
         """Whether messengers and web sites send such files: without a camera, scaled, and strongly compressed."""
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY

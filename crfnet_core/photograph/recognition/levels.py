@@ -34,12 +34,16 @@ MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 #: The least fraction of luma near either, of which a part as large as this may lie beyond, by ringing of compression.
 LEAST_LUMA, MOST_RINGING = 3e-5, 1 / 3
 
-#: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
-MOST_ABOVE = 0.02
+#: The largest fractions of samples below the codes of black and above the codes of white: channels of saturated colors
+#: go beyond their luma, of bright ones more than of dark ones.
+MOST_BELOW, MOST_ABOVE = 0.01, 0.02
 
 #: Bins in which a photograph's histogram is smooth, the least range of pictures to ask, and the unevenness of
 #: pictures of few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
 SMOOTH_BINS, LEAST_RANGE, FEW_LEVELS = (32, 64), 0.4, 0.3
+
+#: The largest fraction of black and white samples in a photograph whose camera is not named; 104 have at most 0.29.
+MOST_AT_ENDS = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +99,15 @@ def has_few_levels(levels: Levels) -> bool:
     return is_wide and any(_unevenness(levels.histogram, bins) > FEW_LEVELS for bins in SMOOTH_BINS)
 
 
+def is_mostly_ends(levels: Levels) -> bool:
+    """Return whether most samples are exactly black or white, as in mattes and passes of renders."""
+    return float(levels.histogram[[0, -1]].sum()) > MOST_AT_ENDS * float(levels.histogram.sum())
+
+
 def is_limited_range(levels: Levels) -> bool:
-    """Return whether a picture has the histogram of limited range: Eq. L.2; of 92 real photographs none has."""
-    return _has_piles(levels) or _has_ends(levels)
+    """Return whether a picture has the histogram of limited range: Eq. L.2; of 104 real photographs none has."""
+    samples, luma = map(_ends, (levels.histogram, levels.luma))
+    return _has_piles(samples) or _has_ends(samples, luma)
 
 
 def _unevenness(histogram: Float64Array, bins: int) -> float:
@@ -111,24 +121,22 @@ def _unevenness(histogram: Float64Array, bins: int) -> float:
     return float(steps.sum() / roots.sum()) if roots.any() else math.inf
 
 
-def _has_ends(levels: Levels) -> bool:
+def _has_ends(samples: list[list[float]], luma: list[list[float]]) -> bool:
     """Return whether hardly any luma lies beyond 16 and 235: JPEG compression blurs piles, and least of all in luma."""
-    ends = [_fractions(levels.luma, bands) for bands in (BLACK_BANDS, WHITE_BANDS)]
-    is_reached = all(near >= LEAST_LUMA and beyond <= MOST_RINGING * near for beyond, near, _ in ends)
-    return is_reached and _fractions(levels.histogram, WHITE_BANDS)[0] <= MOST_ABOVE
+    is_reached = all(near >= LEAST_LUMA and beyond <= MOST_RINGING * near for beyond, near, _ in luma)
+    return is_reached and samples[0][0] <= MOST_BELOW and samples[1][0] <= MOST_ABOVE
 
 
-def _has_piles(levels: Levels) -> bool:
+def _has_piles(samples: list[list[float]]) -> bool:
     """Return whether hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one."""
-    ends = [_fractions(levels.histogram, bands) for bands in (BLACK_BANDS, WHITE_BANDS)]
-    is_reached = all(near >= LEAST_AT_END and beyond <= MOST_OUTSIDE for beyond, near, _ in ends)
-    return is_reached and any(near > inside for _, near, inside in ends)
+    is_reached = all(near >= LEAST_AT_END and beyond <= min(near, MOST_OUTSIDE) for beyond, near, _ in samples)
+    return is_reached and any(near > inside for _, near, inside in samples)
 
 
-def _fractions(histogram: Float64Array, bands: tuple[tuple[float, float], ...]) -> list[float]:
-    """Return the fraction of the samples in each band of codes, whose ends are included."""
-    bins = [slice(round(low / 255 * (BINS - 1)), round(high / 255 * (BINS - 1)) + 1) for low, high in bands]
-    return [float(histogram[each].sum() / histogram.sum()) for each in bins]
+def _ends(histogram: Float64Array) -> list[list[float]]:
+    """Return the fractions of the samples in each of `BLACK_BANDS` and of `WHITE_BANDS`, whose ends are included."""
+    edges = np.rint(np.array((BLACK_BANDS, WHITE_BANDS)) / 255 * (BINS - 1)).astype(int)
+    return [[float(histogram[low : high + 1].sum() / histogram.sum()) for low, high in bands] for bands in edges]
 
 
 def _histogram(samples: Float32Array) -> Float64Array:

@@ -11,7 +11,7 @@ from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range
+from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range, is_mostly_ends
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 from crfnet_core.response.log_curves import COLOR_SPACES
 
@@ -60,11 +60,13 @@ def recognize(
     """
     if levels.is_flat or is_noise:
         code, advice = ("flat_frame", "flat_frame_advice") if levels.is_flat else ("noise_frame", "noise_frame_advice")
-        return _recognized(Kind.FLAT, Notice(code), Notice(advice))
+        return _recognized(Kind.FLAT, Notice(code), advice)
     if is_limited_range(levels):
-        return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
+        return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), "limited_range_advice")
     if has_few_levels(levels):
-        return _recognized(Kind.FEW_LEVELS, Notice("few_levels"), Notice("few_levels_advice"))
+        return _recognized(Kind.FEW_LEVELS, Notice("few_levels"), "few_levels_advice")
+    if is_mostly_ends(levels) and not any(origin.names_device for origin in origins):
+        return _recognized(Kind.FEW_LEVELS, Notice("mostly_ends"), "few_levels_advice")
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
@@ -86,19 +88,17 @@ def refuse_linear(color: ColorTags, path: Path) -> None:
         raise PhotoError("tagged_linear", path=path, source=color.transfer_source)
 
 
-def _recognized(kind: Kind, reason: Notice, advice: Notice) -> Recognition:
-    """Return the recognition of a kind, in the sentences of two notices."""
-    return Recognition(kind, str(reason), str(advice))
+def _recognized(kind: Kind, reason: Notice, advice: str) -> Recognition:
+    """Return the recognition of a kind, in the sentences of a notice and of the code of an advice."""
+    return Recognition(kind, str(reason), str(Notice(advice)))
 
 
 def _by_origin(origin: FileOrigin) -> Recognition | None:
     """Return the recognition of a rendering or a sent copy by its metadata."""
     if origin.renderer:
-        reason = Notice("rendering", {"renderer": origin.renderer})
-        return _recognized(Kind.RENDERING, reason, Notice("rendering_advice"))
+        return _recognized(Kind.RENDERING, Notice("rendering", {"renderer": origin.renderer}), "rendering_advice")
     if origin.is_sent_copy:
-        reason = Notice("sent_copy", {"quality": origin.jpeg_quality})
-        return _recognized(Kind.SENT_COPY, reason, Notice("sent_copy_advice"))
+        return _recognized(Kind.SENT_COPY, Notice("sent_copy", {"quality": origin.jpeg_quality}), "sent_copy_advice")
     return None
 
 
@@ -114,8 +114,7 @@ def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
     else:
         likely = ", ".join(f"{curve.name} ({100 * curve.probability:.0f} %)" for curve in near)
         reason = Notice("log_footage", {"code": code, "curves": likely})
-        stops = f"{safest.expected_error:.1f}"
-        advice.append(Notice("log_footage_safest", {"curve": safest.name, "stops": stops}))
+        advice.append(Notice("log_footage_safest", {"curve": safest.name, "stops": f"{safest.expected_error:.1f}"}))
     return Recognition(
         kind=Kind.LOG_FOOTAGE,
         reason=str(reason),

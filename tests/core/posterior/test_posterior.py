@@ -3,7 +3,9 @@ import pytest
 
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, shape_error
+from crfnet_core.response.transfer_functions import hlg_encode, rec709_encode, srgb_encode
 from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for
 
 
@@ -89,6 +91,14 @@ def test_plain_responses_widen_the_errors_and_leave_the_answer(bank, lookalikes)
     assert posterior.plain.sum() == pytest.approx(expected / (1 + expected))
     assert posterior.expected_shape_error == pytest.approx(stated, rel=5e-3)
     assert not np.allclose(posterior.band(), without.band(), atol=1e-3)
+
+
+@pytest.mark.parametrize("encode", [srgb_encode, rec709_encode, hlg_encode])
+def test_a_plain_encoding_of_a_standard_is_found_among_the_plain_responses(bank, encode):
+    true = encode(UNIFORM)
+    evidence = evidence_for(EmorBasis.load().project(true), precision=3)
+    posterior = Posterior.from_evidences(bank, Prior("p", even_prior().shares, 1.0, 0.0, 0.2), [evidence])
+    np.testing.assert_allclose(ResponseBank.plain().brightness[posterior.plain.argmax()], true, atol=1e-6)
 
 
 def test_the_families_sum_to_1_and_overwhelming_evidence_is_no_overflow(bank):

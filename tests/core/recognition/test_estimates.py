@@ -61,6 +61,15 @@ def test_log_footage_is_not_to_be_trusted(network, name):
     assert estimate.warnings[0].code == "recognized"
 
 
+@pytest.mark.parametrize(("file_format", "is_log"), [("JPEG", False), ("movie", True)])
+def test_a_phone_writes_log_into_movies_only_and_its_hazy_stills_are_trusted(network, root, file_format, is_log):
+    haze = rendered(root, lambda light: srgb_encode(0.05 + 0.7 * light))["pixels"]
+    phone = FileMetadata(make="samsung", model="SM-A528B", width=480, height=480, file_format=file_format)
+    estimate = estimated(haze, network, metadata=phone)
+    assert bool(estimate.recognition) is is_log
+    assert (estimate.verdict is Verdict.USABLE) is not is_log
+
+
 def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
     pixels = read_photo(plate).pixels
     limited = quantized((16 + 219 * np.clip(pixels.astype(float) * 1.05 - 0.02, 0, 1)) / 255)
@@ -73,6 +82,15 @@ def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
 def test_noise_is_not_to_be_trusted_whoever_says_what_took_it(network, kind, device):
     estimate = estimated(noise(kind), network, device=device)
     assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.FLAT)
+
+
+@pytest.mark.parametrize(("camera", "verdict"), [({}, "do not trust"), ({"make": "Canon", "model": "EOS R"}, "usable")])
+def test_a_mostly_black_picture_is_a_matte_unless_a_camera_is_named(network, plate, camera, verdict):
+    pixels = read_photo(plate).pixels.copy()
+    pixels[:, : int(0.55 * pixels.shape[1])] = 0
+    metadata = FileMetadata(width=pixels.shape[1], height=pixels.shape[0], file_format="PNG", **camera)
+    estimate = estimated(pixels, network, metadata=metadata)
+    assert (estimate.verdict, bool(estimate.recognition)) == (verdict, not camera)
 
 
 def test_a_screenshot_is_not_to_be_trusted(network):

@@ -219,9 +219,17 @@ def test_a_plain_background_and_a_small_range_are_no_few_levels():
         assert not has_few_levels(Levels.from_pixels(quantized(picture)))
 
 
-def test_warm_photographs_are_not_limited_range():
-    """Their luma ends where white of video lies, but channels go on to 255."""
+def test_pictures_of_saturated_colors_are_not_limited_range():
+    """Their luma ends where black and white of video lie, but channels go on to 0 or to 255."""
     codes = np.random.default_rng(0).normal(150, 60, (400, 400, 1)).clip(16, 235) / 255
     warm = np.concatenate([codes * 255 / 235, codes, codes * 0.777], axis=2)
     assert is_limited_range(Levels.from_pixels(quantized(np.repeat(warm @ LUMA.reshape(3, 1), 3, axis=2))))
     assert not is_limited_range(Levels.from_pixels(quantized(warm)))
+    dark_yellow = np.where(codes < 0.25, codes * (1, 1, 0), codes)
+    assert not is_limited_range(Levels.from_pixels(quantized(dark_yellow)))
+
+
+def test_more_samples_beyond_16_and_235_than_at_them_are_not_limited_range():
+    codes = np.random.default_rng(0).uniform(28, 175, 160_000)
+    codes[:180] = np.repeat([5, 16, 235, 250], (60, 30, 30, 60))
+    assert not is_limited_range(Levels.from_pixels(quantized(np.repeat(codes.reshape(400, 400, 1), 3, axis=2) / 255)))
