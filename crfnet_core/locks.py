@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -29,9 +29,12 @@ else:
 @contextmanager
 def locked_folder(folder: Path) -> Iterator[None]:
     """Let no other process into such a block of a folder meanwhile; Windows and some file systems lock no folders."""
-    with ExitStack() as stack:
-        with suppress(OSError):
-            number = os.open(folder, os.O_RDONLY)
-            stack.callback(os.close, number)
-            fcntl.flock(number, fcntl.LOCK_EX)
+    number = -1
+    with suppress(OSError):
+        number = os.open(folder, os.O_RDONLY)
+        fcntl.flock(number, fcntl.LOCK_EX)
+    try:
         yield
+    finally:
+        with suppress(OSError):  # nothing was written by it
+            os.close(number)
