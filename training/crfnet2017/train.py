@@ -203,13 +203,8 @@ def main() -> None:
     recipe = replace(recipe, steps=options.steps or recipe.steps, mixed=recipe.mixed and not options.float32)
     config = RunConfig(options.stage, recipe, options.seed, options.init)
     splits = {name: split.to(torch.device(options.device)) for name, split in read_splits(options.data).items()}
-    train(
-        splits["train"],
-        validation_windows(splits["validation"]),
-        options.run,
-        config,
-        digest=training_digest(options.data),
-    )
+    validation, digest = validation_windows(splits["validation"]), training_digest(options.data)
+    train(splits["train"], validation, options.run, config, digest=digest)
     print((options.run / "log.csv").read_text(), end="")
 
 

@@ -55,11 +55,7 @@ RESOLUTIONS = tuple(Condition(f"resolution {4 // averaged}x", averaged=averaged)
 
 CONDITIONS = (
     CLEAN,
-    *(
-        Condition(f"exposure {factor:g}", factor=factor)
-        for factor in EXPOSURE_FACTORS + SEVERE_EXPOSURES
-        if factor != 1
-    ),
+    *(Condition(f"exposure {factor:g}", factor) for factor in EXPOSURE_FACTORS + SEVERE_EXPOSURES if factor != 1),
     *RESOLUTIONS,
     Condition("grayscale", is_gray=True),
     *(Condition(f"noise variance {variance:g}", noise=variance) for variance in (0.5, 1, 2, 4)),

@@ -22,7 +22,6 @@ from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, ref
 #: Five of Blender's studio lights (CC0), as Blender 4.5 stores them; their panoramas and SHA-256 are in the README.md
 #: there. Sunrise, sunset and night are left out, because the training data holds these panoramas.
 LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
-LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr")
 
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
 #: scenes: about as in the training scenes, each scaled to a geometric mean of 1.
@@ -103,7 +102,7 @@ def dorf_test_set(data: Path) -> TestSet:
 
 def bundled_test_set() -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
-    scenes = tuple(SceneFile(Path(light).stem, "panorama", LIGHTS_FOLDER / light, True) for light in LIGHTS)
+    scenes = tuple(SceneFile(path.stem, "panorama", path, True) for path in sorted(LIGHTS_FOLDER.glob("*.exr")))
     return TestSet(scenes, np.stack(list(formula_curves().values())))
 
 
