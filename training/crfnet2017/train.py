@@ -156,10 +156,7 @@ def train(
 
 
 def start_from(network: CRFNet, source: Path) -> None:
-    """Copy the weights of a run (its best checkpoint) or of a checkpoint into the network, in place.
-
-    A last layer with another number of outputs stays as it is, as between the two stages.
-    """
+    """Copy the weights of a run or a checkpoint into the network; a last layer with other outputs stays as it is."""
     path = source / "best.pt" if source.is_dir() else source
     state = torch.load(path, map_location="cpu", weights_only=True)["network"]
     if state["head.weight"].shape != network.head.weight.shape:

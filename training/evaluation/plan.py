@@ -113,10 +113,7 @@ def clean_photographs(scenes: Sequence[int], curves: Sequence[int], *, count: in
 def stress_photographs(
     scenes: Sequence[int], originals: Sequence[int], curves: Sequence[int], *, count: int
 ) -> list[TestPhotograph]:
-    """Return the photographs of the protocol "paper": `count` of them under every condition.
-
-    `RESOLUTIONS` are made of `originals`, and left out without any.
-    """
+    """Return the photographs of the protocol "paper", `count` of each condition; `RESOLUTIONS` are of `originals`."""
     photographs = []
     for condition in CONDITIONS:
         sources = originals if condition.averaged else scenes

@@ -85,10 +85,7 @@ class TestSet:
 
 
 def dorf_test_set(data: Path) -> TestSet:
-    """Return the test scenes of the folder `data` and the 201 responses of DoRF.
-
-    Raise CRFNetError if the split of the data differs from training/data/splits.json.
-    """
+    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `checked_splits`."""
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data)
     files = split_scenes(data / "linear", with_imported=False)["test"]
@@ -126,10 +123,7 @@ def formula_curves() -> dict[str, Float64Array]:
 
 
 def training_luminance(data: Path) -> Float32Array:
-    """Return luminances of the training scenes of the folder `data`, without those that were imported later.
-
-    So the test photographs stay the same when training gets more scenes.
-    """
+    """Return luminances of training scenes, but of no imported ones: they must not change the test photographs."""
     files = split_scenes(data / "linear", with_imported=False)["train"]
     return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
 

@@ -115,10 +115,7 @@ def bodies_table(report: Report, model: str) -> str:
 
 
 def checked_report(path: Path, config: ModelConfig) -> Report:
-    """Return the report, which must hold figures of this very model.
-
-    Raise CRFNetError if it is of another model, was measured on the bundled scenes, or lacks P0.
-    """
+    """Return the report; CRFNetError if it is of another model, was measured on the bundled scenes, or lacks P0."""
     report = read_report(path)
     if report.models.get(config.name) != config.sha256:
         raise CRFNetError(f"{path}: holds no figures of {config.label}; evaluate this model")

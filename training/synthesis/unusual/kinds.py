@@ -109,8 +109,5 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> 
 
 
 def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
-    """Return an exposure that puts a random percentile of the brightest channel of light at irradiance 1.
-
-    The light is linear, float32 (..., H, W, 3); the percentile is drawn from `SATURATED`.
-    """
+    """Return an exposure that puts a random percentile of the brightest channel of linear light at irradiance 1."""
     return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
