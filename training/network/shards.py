@@ -147,9 +147,7 @@ def shard_files(folder: Path, split: str) -> list[Path]:
     """Return the shard files of a split, sorted; FileNotFoundError if there are none."""
     files = sorted(folder.glob(f"{split}_*.npz"))
     if not files:
-        raise FileNotFoundError(
-            f"{folder}: no shards of the split {split}; run python -m training.network.shards first"
-        )
+        raise FileNotFoundError(f"{folder}: no shards of the split {split}; make them with training.network.shards")
     return files
 
 

@@ -109,9 +109,8 @@ def weight_correlations(cases: Cases, estimator: str) -> Figures:
         np.array([np.mean([rows[number][name] for number in group], axis=0) for group in groups])
         for name in ("true weights", "weights")
     )
-    return {
-        f"weight {k + 1} correlation": _correlation(true[:, k], estimated[:, k], resampling) for k in range(WEIGHTS)
-    }
+    correlations = (_correlation(true[:, k], estimated[:, k], resampling) for k in range(WEIGHTS))
+    return {f"weight {number} correlation": correlation for number, correlation in enumerate(correlations, 1)}
 
 
 def rounded(figures: Figures) -> Figures:

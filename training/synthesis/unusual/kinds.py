@@ -108,6 +108,8 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> 
     return Photo.from_array(codes, color_order="RGB", name=f"{kind}, {scene.name}")
 
 
-def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
+def random_exposure(
+    light: Float32Array, rng: np.random.Generator, percentiles: tuple[float, float] = SATURATED
+) -> float:
     """Return an exposure that puts a random percentile of the brightest channel of linear light at irradiance 1."""
-    return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
+    return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*percentiles))), 1e-6)
