@@ -48,10 +48,7 @@ class ShippedCRFNet(nn.Module):
 
 
 def load_network(run: Path) -> ShippedCRFNet:
-    """Return the best network of a run, ready to infer, with its normalizations folded.
-
-    Raise SystemExit if the run is of the first stage, which classifies responses.
-    """
+    """Return the best network of a run of the stage regress, its normalizations folded, else raise SystemExit."""
     state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
     network = CRFNet()
     if state["network"]["head.weight"].shape != network.head.weight.shape:

@@ -33,10 +33,7 @@ class Bottleneck(nn.Module):
 
 
 class CRFNet(nn.Module):
-    """Windows to 11 EMoR weights, or to scores of the 201 responses of DoRF.
-
-    Source: CRF-net paper, Table 1. With 11 outputs it has 3 864 203 parameters.
-    """
+    """Windows to 11 EMoR weights (3 864 203 parameters), or to scores of 201 responses: CRF-net paper, Table 1."""
 
     def __init__(self, outputs: int = COMPONENTS) -> None:
         super().__init__()

@@ -44,7 +44,6 @@ PAPER = Recipe(
     learning_rate=0.01,
     step_size=500_000,
     head_factor=1.0,
-    momentum=0.9,
     weight_decay=5e-4,
     batch=64,
     mixed=False,

@@ -156,10 +156,7 @@ def train(
 
 
 def start_from(network: CRFNet, source: Path) -> None:
-    """Copy the weights of a run (its best checkpoint) or of a checkpoint into the network, in place.
-
-    A last layer with another number of outputs stays as it is, as between the two stages.
-    """
+    """Copy the weights of a run or a checkpoint into the network; a last layer with other outputs stays as it is."""
     path = source / "best.pt" if source.is_dir() else source
     state = torch.load(path, map_location="cpu", weights_only=True)["network"]
     if state["head.weight"].shape != network.head.weight.shape:
@@ -203,13 +200,8 @@ def main() -> None:
     recipe = replace(recipe, steps=options.steps or recipe.steps, mixed=recipe.mixed and not options.float32)
     config = RunConfig(options.stage, recipe, options.seed, options.init)
     splits = {name: split.to(torch.device(options.device)) for name, split in read_splits(options.data).items()}
-    train(
-        splits["train"],
-        validation_windows(splits["validation"]),
-        options.run,
-        config,
-        digest=training_digest(options.data),
-    )
+    validation, digest = validation_windows(splits["validation"]), training_digest(options.data)
+    train(splits["train"], validation, options.run, config, digest=digest)
     print((options.run / "log.csv").read_text(), end="")
 
 

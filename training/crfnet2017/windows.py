@@ -80,10 +80,7 @@ def read_splits(data: Path) -> dict[str, TrainingScenes]:
 
 
 def scene_pixels(scene: Scene, number: int) -> Tensor:
-    """Return a scene as float16 (3, H, W), averaged by the whole factor that leaves its shorter side just above 227.
-
-    So a window sees nearly the whole scene. A panorama is dithered first, with a seed of its number.
-    """
+    """Return a scene, float16 (3, H, W), averaged to a shorter side just above 227: a window sees nearly all of it."""
     pixels = dithered(scene.pixels, np.random.default_rng([2017, number])) if scene.is_panorama else scene.pixels
     factor = max(1, min(pixels.shape[:2]) // WINDOW_SIZE)
     half = np.minimum(area_averaged(pixels, factor), FLOAT16_MAX).astype(np.float16)

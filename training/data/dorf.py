@@ -22,10 +22,7 @@ CURVES, LINES = 201, 6
 
 
 def parse_dorf(text: str) -> Float64Array:
-    """Return the brightness of the 201 responses at 1024 uniform irradiances, shape (201, 1024), in the text's order.
-
-    Raise CurveError if the text is cut short, or a curve does not rise from (0, 0) to (1, 1).
-    """
+    """Return the 201 responses at 1024 uniform irradiances, shape (201, 1024), in the text's order, or CurveError."""
     lines = [line for line in text.splitlines() if line.strip()]
     if len(lines) != CURVES * LINES:
         raise CurveError(f"{len(lines)} lines instead of {CURVES} curves of {LINES}; download dorfCurves.txt again")

@@ -59,10 +59,7 @@ class RealPhotograph:
 
 
 def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
-    """Return folder -> photographs in its list's order: DATA/real and DATA/real_bodies.
-
-    DATA/real_bodies may be absent; its list says which bodies share a fold. In DATA/real each body is its own fold.
-    """
+    """Return folder -> photographs in its list's order: DATA/real and, where it exists, DATA/real_bodies."""
     sets = {REAL: [_of_real(data / REAL, row) for row in table_rows(data / REAL / "cases.csv")]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES

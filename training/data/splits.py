@@ -35,10 +35,7 @@ def curve_groups(dorf: Float64Array) -> IndexArray:
 
 
 def held_out_curves(dorf: Float64Array) -> IndexArray:
-    """Return the sorted indices of the curves that P2 holds out: whole groups, a fifth of the curves.
-
-    The groups come in random order, and each is held out if it still fits into `HELD_OUT_FRACTION` of the curves.
-    """
+    """Return the sorted indices of the curves that P2 holds out: random whole groups, up to a fifth of the curves."""
     groups = curve_groups(dorf)
     sizes, room = np.bincount(groups), round(HELD_OUT_FRACTION * len(dorf))
     chosen = []
@@ -63,11 +60,7 @@ def compute_splits(data: Path) -> dict[str, Any]:
 
 
 def checked_splits(data: Path) -> dict[str, Any]:
-    """Return the splits in training/data/splits.json.
-
-    Raise CRFNetError if the scenes or curves in the folder `data` are split otherwise, so that figures would not be
-    comparable.
-    """
+    """Return the splits in splits.json; CRFNetError if scenes or curves in the folder `data` are split otherwise."""
     splits: dict[str, Any] = json.loads(SPLITS_FILE.read_text())
     computed = compute_splits(data)
     differing = [name for name in splits if splits[name] != computed[name]]

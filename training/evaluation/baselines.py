@@ -27,11 +27,7 @@ MOST_ADDED, MOST_USED = 3.0, 0.95
 
 
 def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
-    """Return the guesses that are the same for every photograph, by name.
-
-    `known`, (N, 1024): the responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of
-    DoRF.
-    """
+    """Return the guesses that are the same for every photograph; one is the geometric median of `known`, (N, 1024)."""
     samples = {
         "sRGB": srgb_encode(UNIFORM),
         "Rec.709": rec709_encode(UNIFORM),

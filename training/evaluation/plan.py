@@ -55,11 +55,7 @@ RESOLUTIONS = tuple(Condition(f"resolution {4 // averaged}x", averaged=averaged)
 
 CONDITIONS = (
     CLEAN,
-    *(
-        Condition(f"exposure {factor:g}", factor=factor)
-        for factor in EXPOSURE_FACTORS + SEVERE_EXPOSURES
-        if factor != 1
-    ),
+    *(Condition(f"exposure {factor:g}", factor) for factor in EXPOSURE_FACTORS + SEVERE_EXPOSURES if factor != 1),
     *RESOLUTIONS,
     Condition("grayscale", is_gray=True),
     *(Condition(f"noise variance {variance:g}", noise=variance) for variance in (0.5, 1, 2, 4)),
@@ -117,10 +113,7 @@ def clean_photographs(scenes: Sequence[int], curves: Sequence[int], *, count: in
 def stress_photographs(
     scenes: Sequence[int], originals: Sequence[int], curves: Sequence[int], *, count: int
 ) -> list[TestPhotograph]:
-    """Return the photographs of the protocol "paper": `count` of them under every condition.
-
-    `RESOLUTIONS` are made of `originals`, and left out without any.
-    """
+    """Return the photographs of the protocol "paper", `count` of each condition; `RESOLUTIONS` are of `originals`."""
     photographs = []
     for condition in CONDITIONS:
         sources = originals if condition.averaged else scenes

@@ -55,10 +55,7 @@ class Evaluation:
 
 
 def evaluate(evaluation: Evaluation) -> Report:
-    """Measure what the table lacks, write report.json and report.md, and return the report.
-
-    Raise CRFNetError if two models have one name, or P2 is asked of a model that knows its responses.
-    """
+    """Measure what the table lacks, write report.json and report.md, and return the report."""
     _check(evaluation)
     header = {"seed": SEED, "test_set": evaluation.test_set.digest}
     table = Table(evaluation.out / TABLE_FILE, header)

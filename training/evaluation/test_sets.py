@@ -22,7 +22,6 @@ from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, ref
 #: Five of Blender's studio lights (CC0), as Blender 4.5 stores them; their panoramas and SHA-256 are in the README.md
 #: there. Sunrise, sunset and night are left out, because the training data holds these panoramas.
 LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
-LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr")
 
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
 #: scenes: about as in the training scenes, each scaled to a geometric mean of 1.
@@ -86,10 +85,7 @@ class TestSet:
 
 
 def dorf_test_set(data: Path) -> TestSet:
-    """Return the test scenes of the folder `data` and the 201 responses of DoRF.
-
-    Raise CRFNetError if the split of the data differs from training/data/splits.json.
-    """
+    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `checked_splits`."""
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data)
     files = split_scenes(data / "linear", with_imported=False)["test"]
@@ -103,7 +99,7 @@ def dorf_test_set(data: Path) -> TestSet:
 
 def bundled_test_set() -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
-    scenes = tuple(SceneFile(Path(light).stem, "panorama", LIGHTS_FOLDER / light, True) for light in LIGHTS)
+    scenes = tuple(SceneFile(path.stem, "panorama", path, True) for path in sorted(LIGHTS_FOLDER.glob("*.exr")))
     return TestSet(scenes, np.stack(list(formula_curves().values())))
 
 
@@ -127,10 +123,7 @@ def formula_curves() -> dict[str, Float64Array]:
 
 
 def training_luminance(data: Path) -> Float32Array:
-    """Return luminances of the training scenes of the folder `data`, without those that were imported later.
-
-    So the test photographs stay the same when training gets more scenes.
-    """
+    """Return luminances of training scenes, but of no imported ones: they must not change the test photographs."""
     files = split_scenes(data / "linear", with_imported=False)["train"]
     return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
 

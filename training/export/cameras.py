@@ -103,12 +103,11 @@ def raw_camera(found: PairCalibration) -> Camera:
     """Return the camera that was measured from raw files and their JPEGs, smoothed as stacks are."""
     iso = tuple(sorted({shot.iso for shot in found.shots if shot.iso}))
     settings = replace(CameraSettings.from_metadata(found.metadata), iso=iso)
-    shape, scale = found.uncertainty.shape_stops, found.uncertainty.scale_stops
     return Camera(
         name=settings.camera,
         curve=_smoothed(found.curve),
-        shape_stops=round(shape, 3),
-        scale_stops=round(scale, 3),
+        shape_stops=round(found.uncertainty.shape_stops, 3),
+        scale_stops=round(found.uncertainty.scale_stops, 3),
         source=f"{len(found.shots)} raw files (white by {found.white_basis})",
         settings=settings,
         warnings=tuple(map(str, found.warnings)),

@@ -19,16 +19,9 @@ from training.evaluation.report import paper
 from training.evaluation.report.document import Report, read_report, value
 from training.evaluation.report.markdown import markdown_table
 
-#: The introductions of the cards, one for each input of networks, and the figures; names in braces are filled in.
+#: The introductions of the cards, one for each input of networks, their sentences on curves, and the figures; names in
+#: braces are filled in.
 TEMPLATES = Path(__file__).with_name("model_card_templates")
-
-ALL_CURVES = (
-    "All 201 DoRF curves\nare in training. So P0 below is the accuracy on new photographs of known responses, and"
-    " the real photographs give\nthe accuracy on new cameras."
-)
-HELD_OUT_CURVES = (
-    "{count} of the 201 DoRF curves, and all mixtures with them, are left out: P2 below is measured on these."
-)
 
 #: The baselines in model.json, and in the table of bodies.
 CARD_BASELINES, BODY_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES), (GAMMA, OTHER_BODIES)
@@ -44,12 +37,13 @@ def introduction(folder: Path, config: ModelConfig) -> str:
     """Return the text before the figures."""
     held_out = len(config.training.get("held_out_curves", ()))
     template = (TEMPLATES / f"{config.input_name}.md").read_text()
+    curves = (TEMPLATES / ("held_out_curves.md" if held_out else "all_curves.md")).read_text().rstrip()
     return template.format(
         **asdict(config),
         size=(folder / "model.onnx").stat().st_size / 1e6,
         statistics=LENGTH,
         scenes=VALIDATION_SCENES,
-        curves=HELD_OUT_CURVES.format(count=held_out) if held_out else ALL_CURVES,
+        curves=curves.format(count=held_out),
     )
 
 
@@ -121,10 +115,7 @@ def bodies_table(report: Report, model: str) -> str:
 
 
 def checked_report(path: Path, config: ModelConfig) -> Report:
-    """Return the report, which must hold figures of this very model.
-
-    Raise CRFNetError if it is of another model, was measured on the bundled scenes, or lacks P0.
-    """
+    """Return the report; CRFNetError if it is of another model, was measured on the bundled scenes, or lacks P0."""
     report = read_report(path)
     if report.models.get(config.name) != config.sha256:
         raise CRFNetError(f"{path}: holds no figures of {config.label}; evaluate this model")

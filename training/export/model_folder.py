@@ -41,10 +41,7 @@ def load_network(run: Path) -> ShippedNetwork:
 
 
 def write_config(folder: Path, signature: Signature, record: Record) -> None:
-    """Write model.json for the model.onnx in `folder`, whose name is the model's, from the record of the run.
-
-    `training.export.model_card` adds the figures later.
-    """
+    """Write model.json, still without figures, for the model.onnx in `folder`, whose name is the model's."""
     is_without_held_out = record["recipe"].get("training", {}).get("without_held_out", False)
     config = ModelConfig(
         name=folder.name,
@@ -84,10 +81,7 @@ def write_golden(network: nn.Module, signature: Signature, path: Path) -> None:
 
 
 def assert_parity(folder: Path, golden: Path) -> float:
-    """Return the largest difference between the golden outputs and onnxruntime for the model in `folder`.
-
-    Raise SystemExit if it is above `PARITY`.
-    """
+    """Return the largest difference between golden outputs and onnxruntime's; SystemExit if it is above `PARITY`."""
     network = ResponseNetwork.load(folder)
     predicted = network.predict(golden_windows())
     with np.load(golden) as expected:
@@ -108,10 +102,7 @@ def _difference(evidences: Sequence[Evidence], expected: Sequence[Float32Array])
 
 
 def write_model(network: nn.Module, signature: Signature, options: argparse.Namespace) -> None:
-    """Write the model folder of a `rounded` network that is ready to infer, with the options of `export_options`.
-
-    It writes the graph, run.json and golden predictions, compares onnxruntime with PyTorch, and then writes model.json.
-    """
+    """Write the folder of a `rounded` network that is ready to infer, with the options of `export_options`."""
     record = read_run(options.run)
     options.out.mkdir(parents=True, exist_ok=True)
     export_onnx(network, signature, options.out / "model.onnx")

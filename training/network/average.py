@@ -32,9 +32,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     records = [read_run(run) for run in runs]
     sources = [run / CHECKPOINT if (run / CHECKPOINT).exists() else run for run in runs]
     if not _are_related(sources, records):
-        raise SystemExit(
-            "these runs cannot be averaged: their networks differ in size or in the weights they began from"
-        )
+        raise SystemExit("these runs cannot be averaged: their networks differ in size or in their first weights")
     net = PhotographNet(NetworkConfig(**records[0]["recipe"]["network"]))
     networks = [net.state_dict() | read_weights(net, source) for source in sources]
     parts = [share / sum(shares) for share in shares]

@@ -120,13 +120,8 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
 
 
 def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
-    """Write the shard `number` of a split, unless it is there already, and return its path.
-
-    Its photographs depend only on the split and the number: a run can stop and go on, on any number of processes.
-    """
+    """Write the shard `number` of a split and return its path; its photographs depend on these two only."""
     path = shard_path(out, split, number)
-    if path.exists():
-        return path
     # The length of the split's name (train 5, validation 10) separates the splits' seeds; kept for shards that exist.
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
@@ -152,9 +147,7 @@ def shard_files(folder: Path, split: str) -> list[Path]:
     """Return the shard files of a split, sorted; FileNotFoundError if there are none."""
     files = sorted(folder.glob(f"{split}_*.npz"))
     if not files:
-        raise FileNotFoundError(
-            f"{folder}: no shards of the split {split}; run python -m training.network.shards first"
-        )
+        raise FileNotFoundError(f"{folder}: no shards of the split {split}; make them with training.network.shards")
     return files
 
 

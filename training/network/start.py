@@ -23,10 +23,7 @@ def start_from(net: PhotographNet, source: Path) -> None:
 
 
 def read_weights(net: PhotographNet, source: Path) -> dict[str, Tensor]:
-    """Return the weights of a checkpoint, or of a model folder, whose matrices were rounded to half precision.
-
-    Raise SystemExit if a model folder holds another network than one like `net`.
-    """
+    """Return the weights of a checkpoint or of a model folder; SystemExit if the folder's network is not like `net`."""
     file = _weights_file(source)
     return dict(torch.load(file, weights_only=True)["network"]) if file == source else _packaged_state(net, file)
 

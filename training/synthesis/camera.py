@@ -114,10 +114,7 @@ def render_photo(
 def simulate_capture(
     irradiance: Float32Array, curve: Float64Array, capture: Capture, rng: np.random.Generator
 ) -> Uint8Array:
-    """Return the 8-bit photographs, uint8 (..., H, W, 3), of exposed irradiance (..., H, W, 3).
-
-    In this order: blur, shot and read noise, response, sharpening, grain, rounding, JPEG.
-    """
+    """Return the 8-bit photographs, uint8 (..., H, W, 3), of exposed irradiance (..., H, W, 3)."""
     brightness = apply_response(sensed(irradiance, capture, rng), curve)
     if capture.sharpening:
         brightness = brightness + capture.sharpening * (brightness - blurred(brightness, 0.8))

@@ -131,7 +131,7 @@ class PhotographSource:
         develops = kind is not FrameKind.PLAIN
         if rng.random() < AUTOMATIC:
             return automatic_exposure(curve, self.luminance) * rng.uniform(*FACTORS[develops])
-        return 1 / max(float(np.percentile(light[:, ::4, ::4].max(axis=-1), rng.uniform(*SATURATED[develops]))), 1e-6)
+        return random_exposure(light, rng, SATURATED[develops])
 
 
 def _unusual_photograph(

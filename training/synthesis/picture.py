@@ -88,10 +88,7 @@ class Finish:
 
 
 def smoothed(luma: Float32Array, deviation: float) -> Float32Array:
-    """Return luma without detail whose standard deviation among 3 x 3 samples is below `deviation`; edges stay.
-
-    It is the local filter of Lee (1980): the more the samples around vary, the more of a sample is kept.
-    """
+    """Return luma without detail below `deviation` among 3 x 3 samples, and with its edges: Lee's filter (1980)."""
     mean = box_blurred(luma, 3)
     variance = np.maximum(box_blurred(luma * luma, 3) - mean * mean, 0)
     return mean + variance / (variance + np.float32(deviation**2)) * (luma - mean)

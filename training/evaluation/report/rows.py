@@ -24,10 +24,7 @@ def clean_rows(protocol: str, cases: Cases, models: Sequence[str]) -> Iterator[R
 
 
 def stress_rows(conditions: dict[str, Cases]) -> Iterator[ReportRow]:
-    """Yield the figures of the protocol "paper" under every condition, the first of which is clean, and the paper's.
-
-    Resolutions are compared with the first of them, other conditions with clean.
-    """
+    """Yield the figures of the protocol "paper" under every condition, the first of which is clean, and the paper's."""
     clean = next(iter(conditions.values()))
     for group, cases in conditions.items():
         base = conditions.get(RESOLUTIONS[0].name, cases) if group.startswith("resolution") else clean

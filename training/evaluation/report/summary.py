@@ -91,10 +91,7 @@ def reliability(cases: Cases, error: str, estimator: str) -> Figures:
 
 
 def rejection_curve(errors: Float64Array, uncertainties: Float64Array) -> Float64Array:
-    """Return the mean error of the n least uncertain photographs, for n = N down to 1, shape (N,).
-
-    Photographs of equal uncertainty share their mean error, so that their order does not matter.
-    """
+    """Return the mean error of the n least uncertain photographs, n = N to 1, (N,); equals share their mean."""
     _, groups = np.unique(uncertainties, return_inverse=True)
     means = np.bincount(groups, weights=errors) / np.bincount(groups)
     ordered = means[groups][np.argsort(uncertainties, kind="stable")]
@@ -102,11 +99,7 @@ def rejection_curve(errors: Float64Array, uncertainties: Float64Array) -> Float6
 
 
 def weight_correlations(cases: Cases, estimator: str) -> Figures:
-    """Return the correlation over bodies of each of the first EMoR weights, true against estimated.
-
-    The weights of a body are the means over its photographs; bodies are resampled. With fewer than `LEAST_BODIES`
-    bodies there are no figures.
-    """
+    """Return the correlation over bodies, true against estimated, of the first EMoR weights: means over photographs."""
     groups = cases.groups("body key").values()
     if len(groups) < LEAST_BODIES:
         return {}
@@ -116,9 +109,8 @@ def weight_correlations(cases: Cases, estimator: str) -> Figures:
         np.array([np.mean([rows[number][name] for number in group], axis=0) for group in groups])
         for name in ("true weights", "weights")
     )
-    return {
-        f"weight {k + 1} correlation": _correlation(true[:, k], estimated[:, k], resampling) for k in range(WEIGHTS)
-    }
+    correlations = (_correlation(true[:, k], estimated[:, k], resampling) for k in range(WEIGHTS))
+    return {f"weight {number} correlation": correlation for number, correlation in enumerate(correlations, 1)}
 
 
 def rounded(figures: Figures) -> Figures:
@@ -140,10 +132,7 @@ def _psnr(mean: Interval) -> Interval:
 
 
 def _correlation(first: Float64Array, second: Float64Array, resampling: Resampling) -> Interval:
-    """Return Pearson's correlation of two weights of G bodies, 0 where one does not vary.
-
-    A resample that draws one body only has no correlation, and is left out.
-    """
+    """Return Pearson's correlation of two weights of G bodies, 0 where one is constant; not of one-body resamples."""
 
     def covariance(one: Float64Array, other: Float64Array) -> Float64Array:
         return resampling.means(one * other) - resampling.means(one) * resampling.means(other)

@@ -74,9 +74,8 @@ def palette(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     codes = codes_of(camera_rendering(irradiance, rng))
     image = Image.fromarray(codes.reshape(-1, *codes.shape[2:]))  # below one another: they share the palette
     method = Image.Quantize.FASTOCTREE if rng.random() < 0.5 else Image.Quantize.MEDIANCUT
-    chosen = image.resize((image.width // 4, image.height // 4), Image.Resampling.NEAREST).quantize(
-        int(rng.integers(*PALETTE_SIZE, endpoint=True)), method=method
-    )
+    small = image.resize((image.width // 4, image.height // 4), Image.Resampling.NEAREST)
+    chosen = small.quantize(int(rng.integers(*PALETTE_SIZE, endpoint=True)), method=method)
     dither = Image.Dither.FLOYDSTEINBERG if rng.random() < 0.7 else Image.Dither.NONE
     reduced = np.asarray(image.quantize(palette=chosen, dither=dither).convert("RGB"))
     return np.divide(reduced.reshape(codes.shape), np.float32(255), dtype=np.float32)

@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from pathlib import Path
 
 import numpy as np
 
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.response.curve import UNIFORM
 from crfnet_core.types import Float32Array, Uint8Array
-from training.data.scenes import Scene
+from training.data.scenes import Scene, table_rows
 from training.synthesis.camera import Capture, sensed, sensor_light, simulate_capture
 from training.synthesis.unusual.encodings import limited_range, log_footage, messenger, near_linear
 from training.synthesis.unusual.film_scan import film_scan
@@ -51,42 +52,34 @@ class Recipe:
 
     rendering: Rendering
     #: Whether a sensor's blur and noise come before the rendering, and sharpening and grain after it.
-    is_recorded: bool = True
-    is_compressed: bool = True  # whether a share is compressed as JPEG of random quality at the end
+    is_recorded: bool
+    is_compressed: bool  # whether a share is compressed as JPEG of random quality at the end
 
 
-#: How each kind is made, and why an estimate of its response must not be trusted.
+RENDERINGS: dict[UnusualKind, Rendering] = {
+    UnusualKind.LOG_FOOTAGE: log_footage,
+    UnusualKind.NEAR_LINEAR: near_linear,
+    UnusualKind.LIMITED_RANGE: limited_range,
+    UnusualKind.LOCAL_TONE_MAPPING: local_tone_mapping,
+    UnusualKind.GLOBAL_TONE_MAPPING: global_tone_mapping,
+    UnusualKind.SCREENSHOT: screenshot,
+    UnusualKind.FILMIC: filmic,
+    UnusualKind.AGX: agx,
+    UnusualKind.FILM_SCAN: film_scan,
+    UnusualKind.MESSENGER: messenger,
+    UnusualKind.ARTISTIC_FILTER: artistic_filter,
+    UnusualKind.SOLARIZED: solarized,
+    UnusualKind.PALETTE: palette,
+    UnusualKind.LINE_ART: line_art,
+    UnusualKind.FALSE_COLOR: false_color,
+}
+
+_ROWS = {row["kind"]: row for row in table_rows(Path(__file__).with_name("kinds.csv"))}
+
+#: How each kind is made; kinds.csv beside this module also says why an estimate of its response must not be trusted.
 RECIPES = {
-    # Its maker publishes the curve: the exact LUT exists, and black and white lie far inside the codes.
-    UnusualKind.LOG_FOOTAGE: Recipe(log_footage),
-    # It is linear already, or a render's data: a camera's response would bend a straight line.
-    UnusualKind.NEAR_LINEAR: Recipe(near_linear),
-    # Codes 16 and 235 stand for black and white: a response from 0 to 1 is wrong until the range is stretched.
-    UnusualKind.LIMITED_RANGE: Recipe(limited_range),
-    # The same light has another code in another place: no response exists.
-    UnusualKind.LOCAL_TONE_MAPPING: Recipe(local_tone_mapping),
-    # The operator maps luminance and keeps or bends color ratios: no curve holds for every channel.
-    UnusualKind.GLOBAL_TONE_MAPPING: Recipe(global_tone_mapping),
-    # Most of it was drawn, not photographed, and the rest was scaled after its encoding.
-    UnusualKind.SCREENSHOT: Recipe(screenshot, is_recorded=False),
-    # Published view transforms, whose exact inverses exist: one of 16.5 stops, which no camera has, and one that mixes
-    # the channels before and after its curve.
-    UnusualKind.FILMIC: Recipe(filmic, is_recorded=False),
-    UnusualKind.AGX: Recipe(agx, is_recorded=False),
-    # Film, base and scanner each have a curve, different in every channel, and the grain is not of a sensor.
-    UnusualKind.FILM_SCAN: Recipe(film_scan),
-    # Averaging encoded codes and strong compression have replaced the mixtures of light at edges.
-    UnusualKind.MESSENGER: Recipe(messenger, is_compressed=False),
-    # Each channel has a curve of its own, and black is not 0: one response for all does not exist.
-    UnusualKind.ARTISTIC_FILTER: Recipe(artistic_filter),
-    # Brightness falls where light grows: no response that rises exists.
-    UnusualKind.SOLARIZED: Recipe(solarized),
-    # A few dozen colors are left, and dither mixes them: codes no longer measure light.
-    UnusualKind.PALETTE: Recipe(palette, is_compressed=False),
-    # No light was recorded at all.
-    UnusualKind.LINE_ART: Recipe(line_art, is_recorded=False),
-    # Colors are a legend: the channels rise and fall along one scale.
-    UnusualKind.FALSE_COLOR: Recipe(false_color),
+    kind: Recipe(rendering, _ROWS[kind]["is_recorded"] == "yes", _ROWS[kind]["is_compressed"] == "yes")
+    for kind, rendering in RENDERINGS.items()
 }
 
 
@@ -115,9 +108,8 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> 
     return Photo.from_array(codes, color_order="RGB", name=f"{kind}, {scene.name}")
 
 
-def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
-    """Return an exposure that puts a random percentile of the brightest channel of light at irradiance 1.
-
-    The light is linear, float32 (..., H, W, 3); the percentile is drawn from `SATURATED`.
-    """
-    return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
+def random_exposure(
+    light: Float32Array, rng: np.random.Generator, percentiles: tuple[float, float] = SATURATED
+) -> float:
+    """Return an exposure that puts a random percentile of the brightest channel of linear light at irradiance 1."""
+    return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*percentiles))), 1e-6)

@@ -61,10 +61,7 @@ def filmic_sigmoid(slope: float) -> Sigmoid:
 
 
 def filmic(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return pictures in Blender's Filmic view, of any contrast: stops of each channel through a sigmoid.
-
-    What Filmic does to the most saturated highlights is left out.
-    """
+    """Return pictures in Blender's Filmic view, of any contrast, without its treatment of saturated highlights."""
     position = scaled_stops(irradiance * np.float32(np.exp2(rng.uniform(*RENDERING_STOPS))))
     return apply_response(position, filmic_sigmoid(rng.uniform(1.73, 3.28))(UNIFORM))
 
