@@ -46,9 +46,7 @@ class Triples(NamedTuple):
 
     def are_edges(self, least_height: int) -> BoolArray:
         """Return which triples are edges higher than this, in codes: b lies between a and c."""
-        is_edge: BoolArray = self.rise <= self.height
-        is_edge &= self.height > least_height
-        return is_edge
+        return np.asarray((self.rise <= self.height) & (self.height > least_height))
 
     def of_channel(self, channel: int, index: IndexArray) -> tuple[Float32Array, Float32Array, Float32Array]:
         """Return a, b and c of one channel at some indices, each (len(index),)."""
@@ -159,5 +157,4 @@ def interpolation_weights(codes: int, levels: int) -> Float32Array:
     A value lies between two levels and is split between them by linear interpolation.
     """
     position = np.linspace(0, levels - 1, codes)[:, None]
-    weights: Float32Array = np.maximum(1 - np.abs(position - np.arange(levels)), 0).astype(np.float32)
-    return weights
+    return np.asarray(np.maximum(1 - np.abs(position - np.arange(levels)), 0), np.float32)
