@@ -3,20 +3,18 @@
 import sys
 from typing import IO, Any
 
-if sys.platform == "win32":
-    import msvcrt
+#: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
+_LOCKED_BYTE = 1 << 30
 
-    #: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
-    _LOCKED_BYTE = 1 << 30
 
-    def lock(file: IO[Any], *, wait: bool = True) -> None:
-        """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
+def lock(file: IO[Any], *, wait: bool = True) -> None:
+    """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
+    if sys.platform == "win32":
+        import msvcrt
+
         file.seek(_LOCKED_BYTE)
         msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
 
-else:
-    import fcntl
-
-    def lock(file: IO[Any], *, wait: bool = True) -> None:
-        """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
         fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -145,17 +145,14 @@ def _warnings(
     is_answer_of_windows: bool,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
-    warnings = input_warnings(recognition, origins)
     cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
-    if len(cameras) > 1:
-        warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
-    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        warnings.append(Notice("clipped"))
-    if is_answer_of_windows:
-        warnings.append(Notice("answer_of_windows"))
     windows = [window for photograph in photographs for window in photograph.windows]
-    if not any(window.covers_range for window in windows):
-        warnings.append(Notice("narrow_range"))
-    if all(photograph.is_gray for photograph in photographs):
-        warnings.append(Notice("gray"))
-    return tuple(warnings)
+    several = [Notice("several_cameras", {"cameras": ", ".join(cameras)})] if len(cameras) > 1 else []
+    doubts = {
+        "clipped": np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED,
+        "answer_of_windows": is_answer_of_windows,
+        "narrow_range": not any(window.covers_range for window in windows),
+        "gray": all(photograph.is_gray for photograph in photographs),
+    }
+    others = [Notice(code) for code, is_so in doubts.items() if is_so]
+    return (*input_warnings(recognition, origins), *several, *others)

@@ -53,13 +53,6 @@ def _sums_by_code(samples: Samples, stride: int) -> Float32Array:
 def _difference_tables() -> Float32Array:
     """Return the terms of a sample of code i with a neighbor of code j, shape (GRADIENT_SUMS, 256, 256)."""
     code = np.arange(CODES, dtype=np.float32)
-    signed_difference = code[None, :] - code[:, None]
-    absolute_difference = np.abs(signed_difference)
-    tables = [
-        absolute_difference,
-        np.log1p(absolute_difference),
-        signed_difference == 0,
-        signed_difference,
-        np.ones_like(signed_difference),
-    ]
-    return np.stack(tables).astype(np.float32)
+    signed = code - code[:, None]
+    absolute = np.abs(signed)
+    return np.stack([absolute, np.log1p(absolute), signed == 0, signed, np.ones_like(signed)]).astype(np.float32)

@@ -115,16 +115,9 @@ class Samples:
         """
         rows, columns = self._lines
         size, skip = rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
-        return tuple(
-            np.concatenate(
-                [
-                    rows[:, ::skip, start : start + size].reshape(3, -1),
-                    columns[:, start : start + size, ::skip].reshape(3, -1),
-                ],
-                axis=1,
-            )
-            for start in range(0, count * stride, stride)
-        )
+        places = [np.s_[start : start + size] for start in range(0, count * stride, stride)]
+        parts = [(rows[:, ::skip, place], columns[:, place, ::skip]) for place in places]
+        return tuple(np.concatenate([part.reshape(3, -1) for part in pair], axis=1) for pair in parts)
 
     def triples(self, stride: int) -> Triples:
         """Return three samples in a row everywhere, `stride` apart."""
