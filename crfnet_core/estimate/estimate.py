@@ -102,9 +102,7 @@ def estimate_response(
         verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(
-            photographs, origins, recognition, is_answer_of_windows=posterior.network_answer is not None
-        ),
+        warnings=_warnings(photographs, origins, recognition, posterior),
         model=network.config.label,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -141,8 +139,7 @@ def _warnings(
     photographs: Sequence[CutPhotograph],
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
-    *,
-    is_answer_of_windows: bool,
+    posterior: Posterior,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
     cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
@@ -150,7 +147,7 @@ def _warnings(
     several = [Notice("several_cameras", {"cameras": ", ".join(cameras)})] if len(cameras) > 1 else []
     doubts = {
         "clipped": np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED,
-        "answer_of_windows": is_answer_of_windows,
+        "answer_of_windows": posterior.network_answer is not None,
         "narrow_range": not any(window.covers_range for window in windows),
         "gray": all(photograph.is_gray for photograph in photographs),
     }
