@@ -48,7 +48,7 @@ def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
 
 
 def jxl_header(path: Path) -> JxlHeader:
-    """Return the header of the codestream; refuse an animation, of which OpenImageIO returns the last frame."""
+    """Return the header of the codestream; refuse a preview, and an animation, whose last frame OpenImageIO returns."""
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = _START.search(content)
         fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
