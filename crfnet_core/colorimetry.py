@@ -38,7 +38,6 @@ D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)
 
-
 #: The chromaticities of an RGB by name, and the largest condition of their matrix: 2 to 20 of known ones.
 CORNERS, MOST_CONDITION = ("red", "green", "blue", "white"), 1e4
 

@@ -7,22 +7,20 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
-if sys.platform == "win32":
-    import msvcrt
+#: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
+_LOCKED_BYTE = 1 << 30
 
-    #: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
-    _LOCKED_BYTE = 1 << 30
 
-    def lock(file: IO[Any], *, wait: bool = True) -> None:
-        """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
+def lock(file: IO[Any], *, wait: bool = True) -> None:
+    """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
+    if sys.platform == "win32":
+        import msvcrt
+
         file.seek(_LOCKED_BYTE)
         msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
 
-else:
-    import fcntl
-
-    def lock(file: IO[Any], *, wait: bool = True) -> None:
-        """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
         fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
@@ -31,7 +29,9 @@ def locked_folder(folder: Path) -> Iterator[None]:
     """Let no other process into such a block of a folder meanwhile; Windows and some file systems lock no folders."""
     number = -1
     with suppress(OSError):
-        number = os.open(folder, os.O_RDONLY)
+        number = os.open(folder, os.O_RDONLY)  # fails on Windows
+        import fcntl
+
         fcntl.flock(number, fcntl.LOCK_EX)
     try:
         yield

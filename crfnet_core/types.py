@@ -13,22 +13,12 @@ from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get
 import numpy as np
 from numpy.typing import NDArray
 
-#: Pixels, statistics, and what the network computes with.
-Float32Array = NDArray[np.float32]
-
-#: Responses, weights, and what is measured.
-Float64Array = NDArray[np.float64]
-
-#: Code values of 8 bits.
-Uint8Array = NDArray[np.uint8]
-
-#: Code values of 8 bits, where differences of them are taken.
-Int16Array = NDArray[np.int16]
-
+Float32Array = NDArray[np.float32]  # pixels, statistics, and what the network computes with
+Float64Array = NDArray[np.float64]  # responses, weights, and what is measured
+Uint8Array = NDArray[np.uint8]  # code values of 8 bits
+Int16Array = NDArray[np.int16]  # the same, where differences of them are taken
 BoolArray = NDArray[np.bool_]
-
-#: Positions in an array.
-IndexArray = NDArray[np.intp]
+IndexArray = NDArray[np.intp]  # positions in an array
 
 #: The largest finite number.
 LARGEST = sys.float_info.max
@@ -76,8 +66,7 @@ class EqualByFields:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return NotImplemented
-        names = [each.name for each in dataclasses.fields(self) if each.compare]
-        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
+        return all(_same(getattr(self, each.name), getattr(other, each.name)) for each in dataclasses.fields(self))
 
 
 def plain_values(value: Any) -> Any:

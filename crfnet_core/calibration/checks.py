@@ -146,10 +146,8 @@ def frame_differences(fit: StackFit, brightness: Float64Array) -> float:
     Of each part the median residual counts, so that only what its samples have in common does.
     """
     frames = np.broadcast_to(np.arange(brightness.shape[1]), brightness.shape)
-    parts, counts = (
-        frames + np.floor(np.minimum(brightness, 0.999) * FRAME_PARTS) / FRAME_PARTS,
-        np.isfinite(fit.residual),
-    )
+    parts = frames + np.floor(np.minimum(brightness, 0.999) * FRAME_PARTS) / FRAME_PARTS
+    counts = np.isfinite(fit.residual)
     medians = medians_of_bins(255 * fit.residual[counts], parts[counts], LEAST_IN_PART)
     return float(np.abs(medians).mean()) if len(medians) else 0.0
 

@@ -13,7 +13,7 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.metadata.devices import camera_name
-from crfnet_core.photograph.photo import CodeArray, CodeValues
+from crfnet_core.photograph.photo import CodeArray
 from crfnet_core.types import Float64Array, Progress, show_progress
 
 #: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
@@ -67,7 +67,9 @@ def read_frames(
     frames: list[Frame] = []
     for path, time in zip(paths, times, strict=True):
         values = read_codes(path)
-        frames.append(_frame(path, values, ExposureLabel.from_header(values.header, time)))
+        stride = -(-max(values.codes.shape) // KEPT_SIDE)
+        codes, label = values.codes[::stride, ::stride].copy(), ExposureLabel.from_header(values.header, time)
+        frames.append(Frame(path, codes, values.metadata, stride, values.largest, label, values.is_gray))
         _check_like_first(frames[0], frames[-1])
         show_progress(progress, len(frames), len(paths))
     check_files(frames)
@@ -118,13 +120,6 @@ def _pile(fractions: Float64Array) -> int | None:
         return None
     near, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
     return pile if fractions[pile] > ABOVE_NEIGHBORS * near and fractions[pile] > ABOVE_REST * below else None
-
-
-def _frame(path: Path, values: CodeValues, label: ExposureLabel) -> Frame:
-    """Return a file's samples, thinned out."""
-    stride = -(-max(values.codes.shape) // KEPT_SIDE)
-    codes = values.codes[::stride, ::stride].copy()
-    return Frame(path, codes, values.metadata, stride, values.largest, label, values.is_gray)
 
 
 def _check_like_first(first: Frame, frame: Frame) -> None:

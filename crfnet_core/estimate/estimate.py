@@ -95,9 +95,7 @@ def estimate_response(
         verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(
-            photographs, origins, recognition, is_answer_of_windows=posterior.network_answer is not None
-        ),
+        warnings=_warnings(photographs, origins, recognition, posterior),
         model=network.config.label,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -135,18 +133,17 @@ def _warnings(
     photographs: Sequence[CutPhotograph],
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
-    *,
-    is_answer_of_windows: bool,
+    posterior: Posterior,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
-    warnings = input_warnings(recognition, origins)
     cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
-    if len(cameras) > 1:
-        warnings.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
-    holds = {
+    windows = [window for photograph in photographs for window in photograph.windows]
+    several = [Notice("several_cameras", {"cameras": ", ".join(cameras)})] if len(cameras) > 1 else []
+    doubts = {
         "clipped": np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED,
-        "answer_of_windows": is_answer_of_windows,
-        "narrow_range": not any(window.covers_range for photograph in photographs for window in photograph.windows),
+        "answer_of_windows": posterior.network_answer is not None,
+        "narrow_range": not any(window.covers_range for window in windows),
         "gray": all(photograph.is_gray for photograph in photographs),
     }
-    return (*warnings, *(Notice(code) for code in holds if holds[code]))
+    others = [Notice(code) for code, is_so in doubts.items() if is_so]
+    return (*input_warnings(recognition, origins), *several, *others)

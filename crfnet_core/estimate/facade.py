@@ -19,6 +19,8 @@ from crfnet_core.types import Progress
 #: Whatever `read_photo` takes; an array of RGB, shape (H, W, 3), or gray, shape (H, W); or a `Photo`.
 Photograph = str | os.PathLike[str] | bytes | BinaryIO | NDArray[Any] | Photo
 
+_packaged_network = cache(ResponseNetwork.load)
+
 
 def estimate(
     *photographs: Photograph,
@@ -59,9 +61,3 @@ def _photo(photograph: Photograph) -> Photo:
     if isinstance(photograph, np.ndarray):
         return Photo.from_array(photograph, color_order="RGB" if photograph.ndim > 2 else None)
     return read_photo(photograph)
-
-
-@cache
-def _packaged_network() -> ResponseNetwork:
-    """Return the packaged network."""
-    return ResponseNetwork.load()

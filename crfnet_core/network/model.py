@@ -96,12 +96,7 @@ def model_folder(wanted: str | Path | None = None) -> Path:
     if os.path.isdir(wanted):  # noqa: PTH112 - unlike `Path.is_dir`, it takes names that are too long
         return Path(wanted)
     named = [folder for folder in packaged_models() if str(wanted) in (folder.name, folder.name.rpartition("-")[0])]
-    return max(named, key=_version, default=Path(wanted))
-
-
-def _version(folder: Path) -> tuple[int, ...]:
-    """Return the version at the end of a packaged model's name, such as (1, 0)."""
-    return tuple(map(int, folder.name.rpartition("-")[2].split(".")))
+    return max(named, key=lambda folder: [*map(int, folder.name.rpartition("-")[2].split("."))], default=Path(wanted))
 
 
 def read_graph(folder: Path, config: ModelConfig) -> bytes:

@@ -14,15 +14,10 @@ from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.types import Float32Array
 
 #: The errors that onnxruntime raises.
+_NAMES = vars(onnxruntime.capi.onnxruntime_pybind11_state).values()
 _PROBLEMS: tuple[type[Exception], ...] = (
-    RuntimeError,
-    ValueError,
-    MemoryError,
-    *(
-        kind
-        for kind in vars(onnxruntime.capi.onnxruntime_pybind11_state).values()
-        if isinstance(kind, type) and issubclass(kind, Exception)
-    ),
+    *(RuntimeError, ValueError, MemoryError),
+    *(kind for kind in _NAMES if isinstance(kind, type) and issubclass(kind, Exception)),
 )
 
 #: Seconds after which a run ends at its next node, and bytes of the largest constant that is computed at load.

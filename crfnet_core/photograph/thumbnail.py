@@ -19,8 +19,7 @@ def thumbnail(pixels: Pixels) -> Float64Array:
     rows, columns = (np.linspace(0, side - 1, 4 * SIDE).round().astype(int) for side in pixels.shape[:2])
     samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
     cells = samples.reshape(SIDE, 4, SIDE, 4).mean(axis=(1, 3))
-    ranks: Float64Array = cells.ravel().argsort(kind="stable").argsort().reshape(cells.shape).astype(np.float64)
-    return ranks
+    return np.asarray(cells.ravel().argsort(kind="stable").argsort().reshape(cells.shape), np.float64)
 
 
 def is_noise(cells: Float64Array) -> bool:

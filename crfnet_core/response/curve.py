@@ -187,12 +187,10 @@ class ResponseCurve(EqualByFields):
 
     @cached_property
     def _forward(self) -> _PiecewiseLinear:
-        """The response as a function of arrays."""
         return _PiecewiseLinear(self.irradiance, self.brightness)
 
     @cached_property
     def _inverse(self) -> _PiecewiseLinear:
-        """The inverse response as a function of arrays."""
         return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
 
 

@@ -28,8 +28,7 @@ def edge_sums(samples: Samples) -> Float64Array:
     """
     sums = np.stack([_sums_by_level(samples.triples(stride)) for stride in STRIDES])  # (5, 2, 64, 64)
     cells = interpolation_weights(EDGE_LEVELS, GRID)
-    gathered: Float64Array = cells.T @ sums @ cells
-    return gathered
+    return np.asarray(cells.T @ sums @ cells)
 
 
 def _sums_by_level(triples: Triples) -> Float64Array:

@@ -23,8 +23,7 @@ GRADIENTS_SHAPE = (len(STRIDES), 3, GRADIENT_SUMS, LEVELS)
 def level_histogram(samples: Samples) -> Float64Array:
     """Return the number of samples at each level, shape (3, LEVELS): Eq. 8."""
     counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in samples.planes])  # (3, 256)
-    histogram: Float64Array = np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64)
-    return histogram
+    return np.asarray(np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64))
 
 
 def gradient_sums(samples: Samples) -> Float32Array:
@@ -34,8 +33,7 @@ def gradient_sums(samples: Samples) -> Float32Array:
     level, so the mean gradient of brightness, as a function of brightness, follows the slope of f (Eq. 9).
     """
     sums = np.stack([_sums_by_code(samples, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
-    by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)
-    return by_level
+    return np.asarray(sums @ interpolation_weights(CODES, LEVELS))
 
 
 def _sums_by_code(samples: Samples, stride: int) -> Float32Array:
@@ -55,13 +53,6 @@ def _sums_by_code(samples: Samples, stride: int) -> Float32Array:
 def _difference_tables() -> Float32Array:
     """Return the terms of a sample of code i with a neighbor of code j, shape (GRADIENT_SUMS, 256, 256)."""
     code = np.arange(CODES, dtype=np.float32)
-    signed_difference = code[None, :] - code[:, None]
-    absolute_difference = np.abs(signed_difference)
-    tables = [
-        absolute_difference,
-        np.log1p(absolute_difference),
-        signed_difference == 0,
-        signed_difference,
-        np.ones_like(signed_difference),
-    ]
-    return np.stack(tables).astype(np.float32)
+    signed = code - code[:, None]
+    absolute = np.abs(signed)
+    return np.stack([absolute, np.log1p(absolute), signed == 0, signed, np.ones_like(signed)]).astype(np.float32)

@@ -113,7 +113,8 @@ def disagreement_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
         for number, is_chosen in enumerate((is_compared, is_compared & is_isolated)):
             index = evenly_spread(is_chosen, MOST_COMPARED)
             a, b, c = mixtures.of_channels((first, second), index)
-            bands = _level_bands((b[0] + b[1]) >> 1)
+            level = (b[0] + b[1]) >> 1
+            bands = (level * LEVEL_BANDS // CODES == np.arange(LEVEL_BANDS)[:, None]).astype(np.float32)
             sums[number] += bands @ _disagreement(a, b, c)
             counts[number] += bands.sum(axis=1)
     return sums - sums.mean(axis=2, keepdims=True), counts[..., None]
@@ -137,17 +138,10 @@ def _disagreement(a: Int16Array, b: Int16Array, c: Int16Array) -> Float32Array:
     rounding = (candidate_responses().slope.take(b, axis=0) / heights) ** 2
     squared = (ratios[0] - ratios[1]) ** 2
     variance = (rounding[0] + rounding[1]) / np.float32(6)
-    disagreement: Float32Array = squared / (squared + variance + np.float32(RATIO_NOISE**2))
-    return disagreement
+    return np.asarray(squared / (squared + variance + np.float32(RATIO_NOISE**2)))
 
 
 def _stacked(pairs: Iterable[tuple[Float32Array, Float32Array]]) -> tuple[Float32Array, Float32Array]:
     """Return the sums and the counts of several strides, each stacked."""
     sums, counts = zip(*pairs, strict=True)
     return np.stack(sums), np.stack(counts)
-
-
-def _level_bands(level: Int16Array) -> Float32Array:
-    """Return whether codes (M,) are in each band of levels, 0 or 1, shape (LEVEL_BANDS, M)."""
-    bands: Float32Array = (level * LEVEL_BANDS // CODES == np.arange(LEVEL_BANDS)[:, None]).astype(np.float32)
-    return bands

@@ -46,9 +46,7 @@ class Triples(NamedTuple):
 
     def are_edges(self, least_height: int) -> BoolArray:
         """Return which triples are edges higher than this, in codes: b lies between a and c."""
-        is_edge: BoolArray = self.rise <= self.height
-        is_edge &= self.height > least_height
-        return is_edge
+        return np.asarray((self.rise <= self.height) & (self.height > least_height))
 
     def of_channel(self, channel: int, index: IndexArray) -> tuple[Float32Array, Float32Array, Float32Array]:
         """Return a, b and c of one channel at some indices, each (len(index),)."""
@@ -117,16 +115,9 @@ class Samples:
         """
         rows, columns = self._lines
         size, skip = rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
-        return tuple(
-            np.concatenate(
-                [
-                    rows[:, ::skip, start : start + size].reshape(3, -1),
-                    columns[:, start : start + size, ::skip].reshape(3, -1),
-                ],
-                axis=1,
-            )
-            for start in range(0, count * stride, stride)
-        )
+        places = [np.s_[start : start + size] for start in range(0, count * stride, stride)]
+        parts = [(rows[:, ::skip, place], columns[:, place, ::skip]) for place in places]
+        return tuple(np.concatenate([part.reshape(3, -1) for part in pair], axis=1) for pair in parts)
 
     def triples(self, stride: int) -> Triples:
         """Return three samples in a row everywhere, `stride` apart."""
@@ -159,5 +150,4 @@ def interpolation_weights(codes: int, levels: int) -> Float32Array:
     A value lies between two levels and is split between them by linear interpolation.
     """
     position = np.linspace(0, levels - 1, codes)[:, None]
-    weights: Float32Array = np.maximum(1 - np.abs(position - np.arange(levels)), 0).astype(np.float32)
-    return weights
+    return np.asarray(np.maximum(1 - np.abs(position - np.arange(levels)), 0), np.float32)

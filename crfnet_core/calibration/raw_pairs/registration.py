@@ -102,19 +102,13 @@ def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Fl
     def sampled(place: Float64Array) -> Float32Array:
         return np.asarray(map_coordinates(raw, coordinates(place, x, y, raw.shape), order=1, mode="nearest"))
 
+    robust = {"loss": "soft_l1", "f_scale": LOOSE}
+    steps = {"x_scale": _SIZES, "diff_step": 1e-4, "ftol": 1e-4, "max_nfev": EVALUATIONS}
     for _ in range(ROUNDS):
         at, values = _rising_curve(sampled(place), seen)
-        found = least_squares(
-            lambda moved, at=at, values=values: seen - np.interp(sampled(moved), at, values),
-            place,
-            loss="soft_l1",
-            f_scale=LOOSE,
-            x_scale=_SIZES,
-            diff_step=1e-4,
-            ftol=1e-4,
-            max_nfev=EVALUATIONS,
-        )
-        place = found.x
+        place = least_squares(
+            lambda moved, at=at, values=values: seen - np.interp(sampled(moved), at, values), place, **robust, **steps
+        ).x
     explained = np.interp(sampled(place), *_rising_curve(sampled(place), seen))
     is_even = min(np.ptp(seen), np.ptp(explained)) == 0  # as where the pictures do not overlap
     return place, 0.0 if is_even else float(np.corrcoef(seen, explained)[0, 1])

@@ -28,7 +28,9 @@ def decoded_pixels(meta: bytes) -> int:
     areas, parts = dict[int, int](), dict[int, list[int]]()
     for kind, content in boxes(meta[4:]):
         if kind == b"iprp":
-            areas |= {item: max(map(_area, owned), default=0) for item, owned in _properties(content).items()}
+            for item, owned in _properties(content).items():
+                sizes = [box for name, box in owned if name == b"ispe"]
+                areas[item] = max((_number(box, 4, 4) * _number(box, 8, 4) for box in sizes), default=0)
         elif kind == b"iref":
             for item, others in _references(content):
                 parts.setdefault(item, []).extend(others)
@@ -53,12 +55,6 @@ def is_turned(meta: bytes) -> bool:
         elif kind == b"pitm":
             main = _number(content, 4, 4 if content[:1] > b"\0" else 2)
     return any(name == b"imir" or (name == b"irot" and _number(box, 0, 1) & 3) for name, box in owned.get(main, ()))
-
-
-def _area(owned: tuple[bytes, bytes]) -> int:
-    """Return the pixels that a property `ispe` states."""
-    name, box = owned
-    return _number(box, 4, 4) * _number(box, 8, 4) * (name == b"ispe")
 
 
 def _properties(properties: bytes) -> dict[int, list[tuple[bytes, bytes]]]:

@@ -20,9 +20,6 @@ _LINEAR_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
 #: The start of a codestream, which stands alone, in one box or in numbered ones; bytes behind it that are read.
 _START, _HEAD = re.compile(rb"(\A|jxlc|jxlp.{4})\xff\x0a", re.DOTALL), 4096
 
-#: Bits of a side of the picture and of its preview, if that is a multiple of 8 and otherwise.
-_SIDES, _PREVIEW_SIDES = ((5,), (9, 13, 18, 30)), ((0, 0, 5, 9), (6, 8, 10, 12))
-
 
 @dataclass(frozen=True)
 class JxlHeader:
@@ -51,25 +48,30 @@ def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
 
 
 def jxl_header(path: Path) -> JxlHeader:
-    """Return the header of the codestream; refuse an animation, of which OpenImageIO returns the last frame."""
+    """Return the header of the codestream; refuse a preview, and an animation, whose last frame OpenImageIO returns."""
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = _START.search(content)
         fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
-    fields.skip_sides(*_SIDES)
+    fields.skip_sides()
     if fields.number():  # all are the default ones
         return JxlHeader()
     orientation = 1
     if fields.number():
         orientation += fields.number(3)
-        for sides in (_SIDES, _PREVIEW_SIDES):
+        if fields.number():  # a size for showing it
+            fields.skip_sides()
+        for problem in ("a preview", "an animation"):
             if fields.number():
-                fields.skip_sides(*sides)
-        if fields.number():
-            raise PhotoError("coding_not_read", path=path, kind="JPEG XL", problem="an animation")
+                raise PhotoError("coding_not_read", path=path, kind="JPEG XL", problem=problem)
     bits = fields.bit_depth()
     fields.number()  # whether 16 bits are enough for decoding
-    for _ in range(fields.choice((0, 0), (1, 0), (2, 4), (1, 12))):
-        fields.skip_channel()
+    for _ in range(fields.choice((0, 0), (1, 0), (2, 4), (1, 12))):  # channels beside the colors
+        if not fields.number():  # else alpha of 8 bits
+            is_alpha = fields.choice((0, 0), (1, 0), (2, 4), (18, 6)) == 0
+            fields.bit_depth()
+            fields.choice((0, 0), (3, 0), (4, 0), (1, 3))  # fewer samples
+            fields.number(8 * fields.choice((0, 0), (0, 4), (16, 5), (48, 10)))  # its name
+            fields.number(is_alpha)  # whether the colors are multiplied by it
     return JxlHeader(orientation, bits, is_xyb=bool(fields.number()))
 
 
@@ -85,28 +87,19 @@ class _Fields:
         return value
 
     def choice(self, *forms: tuple[int, int]) -> int:
-        """Return a field of one of four forms, which two bits name: the least value, and the bits above it."""
-        least, width = forms[self.number(2)]
+        """Return a number of one of four forms, or of the only one: the least value, and the bits above it."""
+        least, width = forms[self.number(2) if forms[1:] else 0]
         return least + self.number(width)
 
-    def skip_sides(self, small: tuple[int, ...], large: tuple[int, ...]) -> None:
+    def skip_sides(self) -> None:
         """Skip the sides of a picture: the second one is left out if the ratio between them is a usual one."""
-        widths = small if self.number() else large
-        self.number(widths[self.number(2) if widths[1:] else 0])
+        forms = ((0, 5),) if self.number() else ((0, 9), (0, 13), (0, 18), (0, 30))
+        self.choice(*forms)
         if not self.number(3):
-            self.number(widths[self.number(2) if widths[1:] else 0])
+            self.choice(*forms)
 
     def bit_depth(self) -> int:
         is_float = self.number()
         bits = self.choice(*(((32, 0), (16, 0), (24, 0)) if is_float else ((8, 0), (10, 0), (12, 0))), (1, 6))
         self.number(4 * is_float)  # of the exponent
         return bits
-
-    def skip_channel(self) -> None:
-        """Skip a channel beside the colors; the default one is alpha of 8 bits."""
-        if not self.number():
-            is_alpha = self.choice((0, 0), (1, 0), (2, 4), (18, 6)) == 0
-            self.bit_depth()
-            self.choice((0, 0), (3, 0), (4, 0), (1, 3))  # fewer samples
-            self.number(8 * self.choice((0, 0), (0, 4), (16, 5), (48, 10)))  # its name
-            self.number(is_alpha)  # whether the colors are multiplied by it

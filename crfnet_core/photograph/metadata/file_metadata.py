@@ -55,7 +55,9 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     """Return the metadata in an open file's header, and in the segments of a JPEG; damaged fields stay empty."""
     jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
-    history = "" if _keeps_pixels(header) else _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
+    history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
+    if (_text(header, "stEvt:action"), _text(header, "stEvt:changed")) == ("saved", "/metadata"):
+        history = ""  # programs saved nothing but metadata, such as ratings
     color = header_color_tags(header, file_format, jpeg.interop_index)
     return replace(
         jpeg,
@@ -72,11 +74,6 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         file_format=file_format,
         color=color if color.source else replace(color, source=jpeg.color.source),
     )
-
-
-def _keeps_pixels(header: Any) -> bool:
-    """Return whether programs saved nothing but metadata, such as ratings, by all that the XMP history names."""
-    return (_text(header, "stEvt:action"), _text(header, "stEvt:changed")) == ("saved", "/metadata")
 
 
 def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:

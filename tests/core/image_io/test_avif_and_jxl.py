@@ -1,5 +1,4 @@
 import struct
-from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
@@ -104,11 +103,11 @@ def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
     assert values.header.get_int_attribute("Orientation") == 1
 
 
-def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
+def test_lossy_gray_jpeg_xl_is_refused_as_linear_light(tmp_path):
     header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
     header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
     with refused(PhotoError, "jxl_linear"):
-        with_jxl_boxes(header, Path("a.jxl"), JxlHeader())
+        with_jxl_boxes(header, tmp_path, JxlHeader())
 
 
 def test_lossless_jpeg_xl_tagged_linear_keeps_its_codes_and_its_tag(tmp_path):
@@ -120,11 +119,12 @@ def test_lossless_jpeg_xl_tagged_linear_keeps_its_codes_and_its_tag(tmp_path):
 
 
 @pytest.mark.parametrize("head", [b"", b"\0\0\0\x0cJXL \r\n\x87\n" + struct.pack(">I4sI", 100, b"jxlp", 0)])
-def test_an_animation_of_jpeg_xl_is_refused(tmp_path, head):
-    """OpenImageIO would return its last frame. The bits: small sides, fields that are not the default, an animation."""
-    fields = 1 | 3 << 1 | 1 << 6 | 1 << 10 | 1 << 16
+@pytest.mark.parametrize(("place", "problem"), [(15, "a preview"), (16, "an animation")])
+def test_an_animation_of_jpeg_xl_and_a_preview_are_refused(tmp_path, head, place, problem):
+    """OpenImageIO would return the last frame. The bits: small sides, fields that are not the default, the problem."""
+    fields = 1 | 3 << 1 | 1 << 6 | 1 << 10 | 1 << place
     (tmp_path / "a.jxl").write_bytes(head + b"\xff\x0a" + fields.to_bytes(86, "little"))
-    with refused(PhotoError, "coding_not_read", problem="an animation"):
+    with refused(PhotoError, "coding_not_read", problem=problem):
         read_codes(tmp_path / "a.jxl")
 
 
