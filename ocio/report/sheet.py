@@ -44,12 +44,9 @@ DOT = "   ·   "
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9,
-    "axes.edgecolor": QUIET,
     "axes.linewidth": 0.8,
-    "axes.labelcolor": INK,
-    "xtick.color": QUIET,
-    "ytick.color": QUIET,
-    "text.color": INK,
+    **dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), QUIET),
+    **dict.fromkeys(("axes.labelcolor", "text.color"), INK),
     "text.parse_math": False,
 }
 
