@@ -17,10 +17,7 @@ from .lut1d import Lut1D, clean_comments
 
 @dataclass(frozen=True)
 class RgbLut1D:
-    """Three tables of one length and one domain, for R, G and B, with provenance, one line a comment.
-
-    Raise a LutError if there are not three, or they differ in length or domain.
-    """
+    """Three tables of one length and one domain, else a LutError, for R, G and B; and provenance, a line a comment."""
 
     channels: tuple[Lut1D, ...]
     comments: tuple[str, ...] = ()
