@@ -94,8 +94,7 @@ def add_json(parser: Parser) -> None:
 
 def add_choice(parser: Parser, name: str, choices: Sequence[str], meaning: str) -> None:
     """Add an option with one of several values; the first is the default."""
-    help_text = f"{meaning} (default: {choices[0]})"
-    parser.add_argument(name, choices=choices, default=choices[0], help=help_text)
+    parser.add_argument(name, choices=choices, default=choices[0], help=f"{meaning} (default: {choices[0]})")
 
 
 def add_network(parser: Parser) -> None:
