@@ -23,10 +23,7 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code.
-
-    It is 0, `BAD_INPUT`, `NOT_TRUSTED` with --strict, or 128 and the number of the signal that ended it.
-    """
+    """Run the command; return 0, `BAD_INPUT`, `NOT_TRUSTED` (with --strict), or 128 and the signal that ended it."""
     complete_streams()
     with own_stderr(), interruptible() as caught:
         try:

@@ -10,8 +10,7 @@ from crfnet_core.errors import CRFNetError
 #: Code of an error -> what the user can do with an option, behind "; " at the end of its sentence.
 REMEDIES: Mapping[str, str] = {
     # calibration
-    "exposures_gap": "--times states them in place of EXIF",
-    "exposures_span": "--times states them in place of EXIF",
+    **dict.fromkeys(("exposures_gap", "exposures_span"), "--times states them in place of EXIF"),
     "frame_edited": "or add --accept-edited to measure the response of that program",
     "frame_mistimed": "--times states the times in place of EXIF",
     "frame_untimed": "add --times 1/60,1/30,...",
@@ -20,23 +19,17 @@ REMEDIES: Mapping[str, str] = {
     "no_camera": "crfnet camera list shows them",
     # movies and plates
     "exr_untagged": "add --encoded",
-    "finished_differs": "or add --overwrite",
-    "finished_foreign": "or add --overwrite",
-    "finished_outdated": "or add --overwrite",
+    **dict.fromkeys(("finished_differs", "finished_foreign", "finished_outdated"), "or add --overwrite"),
     "primaries_differ": "or give them with --primaries",
     "primaries_unknown": "give them with --primaries",
     "single_file": "leave --frames out",
     # photograph
-    "tagged_color_space": "--ignore-metadata does so",
-    "tagged_encoding": "--ignore-metadata does so",
-    "tagged_linear": "--ignore-metadata does so",
+    **dict.fromkeys(("tagged_color_space", "tagged_encoding", "tagged_linear"), "--ignore-metadata does so"),
     # pipeline
-    "file_exists": "or add --overwrite",
-    "files_exist": "or add --overwrite",
+    **dict.fromkeys(("file_exists", "files_exist", "other_options"), "or add --overwrite"),
     "folder_for_photograph": "or add --each for every photograph in it",
     "movie_in_batch": "leave --each out",
     "one_name": "or add --no-linear",
-    "other_options": "or add --overwrite",
     "process_died": "finished photographs are kept, and --workers limits the processes",
 }
 

@@ -42,10 +42,7 @@ def own_stderr() -> Iterator[None]:
 
 
 def shown(text: str) -> str:
-    """Return a line as the command prints it: control characters, as names of files hold them, are question marks.
-
-    What is not Unicode in a name stays: the streams escape it.
-    """
-    return "".join(
+    """Return a line as the command prints it: control characters, as names of files hold them, are question marks."""
+    return "".join(  # surrogates, of names that are not Unicode, stay: the streams escape them
         character if character.isprintable() or "\ud800" <= character <= "\udfff" else "?" for character in text
     )

@@ -16,10 +16,10 @@ __all__ = ["WRITERS", "read_lut", "write_lut"]
 
 def _spi1d_text(lut: AnyLut) -> str:
     """Return a LUT as the text of a .spi1d file, with its comments at the top (OpenColorIO, `FileFormatSpi1D.cpp`)."""
-    low, high = lut.domain
+    (low, high), columns = lut.domain, len(lut.channels)
     lines = [f"# {comment}" for comment in lut.comments]
-    lines += ["Version 1", f"From {low:.9g} {high:.9g}", f"Length {len(lut.values)}", f"Components {len(lut.channels)}"]
-    lines += ["{", *(f"  {row}" for row in table_rows(lut)), "}", ""]
+    lines += ["Version 1", f"From {low:.9g} {high:.9g}", f"Length {len(lut.values)}", f"Components {columns}"]
+    lines += ["{", *(f"  {row}" for row in table_rows(lut, columns=columns)), "}", ""]
     return "\n".join(lines)
 
 
@@ -48,11 +48,10 @@ def _clf_text(lut: AnyLut) -> str:
     if lut.domain != (0.0, 1.0):
         ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)
         lines += [f"    <Range {depth}>", *(f"        <{key}>{end:.9g}</{key}>" for key, end in ends), "    </Range>"]
-    lines += [
-        f'    <LUT1D {depth} interpolation="linear">',
-        f'        <Array dim="{len(lut.values)} {len(lut.channels)}">',
-    ]
-    return "\n".join([*lines, *table_rows(lut), "        </Array>", "    </LUT1D>", "</ProcessList>", ""])
+    size, columns = len(lut.values), len(lut.channels)
+    lines += [f'    <LUT1D {depth} interpolation="linear">', f'        <Array dim="{size} {columns}">']
+    lines += [*table_rows(lut, columns=columns), "        </Array>", "    </LUT1D>", "</ProcessList>", ""]
+    return "\n".join(lines)
 
 
 #: Suffix of each format that is written -> the text of a LUT in it. Each estimate writes all; configs name the first.

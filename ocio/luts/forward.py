@@ -10,7 +10,7 @@ from .rgb_lut import AnyLut, lut_of_channels
 #: How the comment begins that says that a LUT is an inverse response.
 INVERSE_COMMENT = "Inverse camera response"
 
-#: Lengths of a response as a LUT: the 1023 pieces of an estimated response, as they are or each divided evenly.
+#: Lengths of a response as a LUT: the 1023 pieces of an estimated one, or these divided, as power functions need.
 LENGTHS = (1024, 4093, 16369, 65473)
 
 #: Largest error of a response as a LUT, in codes of 10 bits; the shortest length that keeps it is taken.
@@ -18,11 +18,7 @@ MOST_ERROR = 0.1
 
 
 def forward_lut(lut: AnyLut) -> AnyLut:
-    """Return the response, from light to code values, of a LUT of its inverse whose domain holds [0, 1].
-
-    Its domain is the light of the codes; other light is clipped. Its length is the first of `LENGTHS` whose
-    `round_trip_error` at 10 bits is at most `MOST_ERROR`, or the last: power functions, steep in the blacks, need more.
-    """
+    """Return the response, from the light of all codes to codes, of a LUT of its inverse whose domain holds [0, 1]."""
     for length in LENGTHS:
         forward = _sampled(lut, length)
         if round_trip_error(lut, forward, bits=10) <= MOST_ERROR:
@@ -37,12 +33,9 @@ def forward_lut(lut: AnyLut) -> AnyLut:
 
 
 def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
-    """Return the largest error, in codes of 8 to 16 bits, of all codes through an inverse response and back.
-
-    The values between the two LUTs are float32, as in LUT hosts.
-    """
+    """Return the largest error, in codes of 8 to 16 bits, of all codes through an inverse response and back."""
     largest = 2**bits - 1
-    codes = np.arange(largest + 1, dtype=np.float32) / np.float32(largest)
+    codes = np.arange(largest + 1, dtype=np.float32) / np.float32(largest)  # float32 between the LUTs, as in hosts
     errors = [
         np.abs(back.apply(there.apply(codes)) - codes).max()
         for there, back in zip(lut.channels, forward.channels, strict=True)

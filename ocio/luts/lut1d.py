@@ -190,10 +190,7 @@ def inverse_response_lut(
 
 
 def strictly_increasing(values: ArrayLike) -> Float64Array:
-    """Return finite, increasing values, shape (N,), rounded to float32 and as float64, so that they increase strictly.
-
-    Neighbors that became equal are moved apart by units in the last place; the last entry stays as it is.
-    """
+    """Return finite, increasing values, shape (N,), rounded to float32, as float64, so that they increase strictly."""
     # The bits of positive float32 numbers, read as integers, are in the order of the numbers: + 1 is the next number.
     bits = single_precision(values).astype(np.float32).view(np.int32).astype(np.int64)
     magnitude = bits & 0x7FFFFFFF

@@ -62,7 +62,7 @@ def read_lut(path: str | Path) -> AnyLut:
     table = np.reshape(rest[0].getData(), (-1, 3)) if len(rest) == 1 else _sampled(steps, domain)
     table = _raised(path, table.astype(np.float64))
     try:
-        return lut_of_columns(table, domain=domain, comments=comments)
+        return lut_of_columns(table, domain, comments)
     except LutError as problem:
         raise LutError("lut_invalid", path=path, problem=problem) from problem
 

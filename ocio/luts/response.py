@@ -86,10 +86,7 @@ def response_of_lut(lut: AnyLut) -> ResponseCurve:
 
 
 def is_forward(lut: AnyLut) -> bool:
-    """Return whether a LUT brightens on average over its domain: it then leads from light to code values.
-
-    The inverses of camera responses darken: the mean of linear light is 0.5 of its range, their mean is less.
-    """
+    """Return whether a LUT brightens on average over its domain: it then leads from light to code values."""
     ramp = np.linspace(*lut.domain, SAMPLES)
     means = [(each.apply(ramp).mean() - each.values[0]) / np.ptp(each.values) for each in lut.channels]
     return bool(np.mean(means) > MOST_MEAN)

@@ -17,10 +17,7 @@ from .lut1d import Lut1D, clean_comments
 
 @dataclass(frozen=True)
 class RgbLut1D:
-    """Three tables of one length and one domain, for R, G and B, with provenance, one line a comment.
-
-    Raise a LutError if there are not three, or they differ in length or domain.
-    """
+    """Three tables of one length and one domain, else a LutError, for R, G and B; and provenance, a line a comment."""
 
     channels: tuple[Lut1D, ...]
     comments: tuple[str, ...] = ()
@@ -59,14 +56,8 @@ def lut_of_channels(tables: Sequence[Lut1D]) -> AnyLut:
     return tables[0] if len(tables) == 1 else RgbLut1D(tuple(tables))
 
 
-def lut_of_columns(
-    columns: ArrayLike, *, domain: tuple[float, float] = (0.0, 1.0), comments: Sequence[str] = ()
-) -> AnyLut:
-    """Return the LUT of a table, shape (N, 1) or (N, 3): one for all channels if its columns are equal, else three.
-
-    The inputs are N uniform ones over `domain`. Raises as `Lut1D`.
-    """
-    table = np.asarray(columns, dtype=np.float64)
+def lut_of_columns(table: Float64Array, domain: tuple[float, float], comments: Sequence[str]) -> AnyLut:
+    """Return the LUT of a table, shape (N, 3): one for all channels if its columns are equal, else three."""
     if (table == table[:, :1]).all():
         return Lut1D(table[:, 0], domain, tuple(comments))
     return RgbLut1D(tuple(Lut1D(column, domain) for column in table.T), tuple(comments))
@@ -78,12 +69,8 @@ def lut_identity(lut: AnyLut) -> str:
     return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
-def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:
-    """Return the rows of a table with nine digits, which keep float32 values bit for bit.
-
-    There are as many `columns` as the LUT has channels by default; a single value is repeated for more.
-    """
-    table = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
-    if columns > 1:
-        table = np.broadcast_to(table, (len(table), columns))
+def table_rows(lut: AnyLut, *, columns: int) -> list[str]:
+    """Return the rows of a table with nine digits, which keep float32 values; a single value fills all columns."""
+    tables = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
+    table = np.broadcast_to(tables, (len(tables), columns))
     return [" ".join(f"{value:.9g}" for value in row) for row in table.tolist()]

@@ -142,11 +142,10 @@ def _encoded(movie: MovieStream, number: int, frame: VideoFrame | None) -> Encod
     if frame is None:
         raise PlateError("frame_undecodable", path=movie.path, frame=number, line=ffmpeg_line(movie.path))
     _check_form(movie, number, frame)
-    turn = movie.picture.turn
-    samples, alpha = upright(rgb_codes(frame, movie.picture.coding, WHITE), turn), alpha_of(frame)
-    return EncodedFrame(
-        samples, WHITE, None if alpha is None else upright(alpha, turn), _frame_header(movie), movie.color
-    )
+    turn, alpha = movie.picture.turn, alpha_of(frame)
+    samples = upright(rgb_codes(frame, movie.picture.coding, WHITE), turn)
+    alpha = None if alpha is None else upright(alpha, turn)
+    return EncodedFrame(samples, WHITE, alpha, _frame_header(movie), movie.color)
 
 
 def _frame_header(movie: MovieStream) -> Any:

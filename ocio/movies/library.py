@@ -51,7 +51,7 @@ FIRST_PACKETS = 24
 #: Containers by FFmpeg's names: one whose frames have no other place than their own, and one with times in no order.
 MATROSKA, AVI = "matroska,webm", "avi"
 
-#: Words of the messages of FFmpeg's decoders about damage that they fill in.
+#: Words of the messages of FFmpeg's decoders about damage that they fill in from other frames, in place of an error.
 DAMAGE = ("CRC mismatch", "damaged", "error while decoding")
 
 #: Most pixels of a frame (17 520 x 8040 of the largest cinema camera fit), and words by which FFmpeg refuses more.
@@ -150,10 +150,7 @@ def is_shown(packet: Any) -> bool:
 
 
 def decoded_packet(stream: VideoStream, packet: Any) -> tuple[list[VideoFrame], bool]:
-    """Return the frames that a packet completes, None for the last ones, and whether it is damaged.
-
-    Containers mark parts that are cut or lost; decoders raise, or log damage and fill it in from other frames.
-    """
+    """Return the frames that a packet completes, None for the last ones, and whether it is damaged."""
     import av
 
     with av.logging.Capture() as messages:

@@ -55,15 +55,15 @@ def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
     return ((FrameSequence((path,)), read_photo(path)) for path in sample_frames(source))
 
 
-def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator[tuple[int, Photo]]:
-    """Yield up to `count` frames for an estimate, one at a time, ascending, each with its number.
+def chosen_photos(frames: MovieFrames) -> Iterator[tuple[int, Photo]]:
+    """Yield up to `FRAMES_ANALYZED` frames for an estimate, one at a time, ascending, each with its number.
 
-    They are key frames if there are enough, which have the best quality. Of each of `count` parts, the first at
-    `PLACES` is taken that is not nearly black or white and shows something new; the middle ones if none does. Raise a
-    PlateError if none of these can be decoded.
+    They are key frames if there are enough, which have the best quality. Of each part of the movie, the first at
+    `PLACES` is taken that is not nearly black or white and shows something new; the middle ones if none does.
     """
     keys = sorted(set(frames.numbers) & set(frames.movie.key_numbers))
-    parts = [part.tolist() for part in np.array_split(keys if len(keys) >= count else frames.numbers, count)]
+    among = keys if len(keys) >= FRAMES_ANALYZED else frames.numbers
+    parts = [part.tolist() for part in np.array_split(among, FRAMES_ANALYZED)]
     candidates = {part[int(place * len(part))]: index for index, part in enumerate(parts) if part for place in PLACES}
     seen: dict[int, Float32Array] = {}
     for number, photo in frames.photos(candidates):
@@ -78,7 +78,7 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
 
 
 def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Iterator[tuple[int, Photo]]:
-    """Yield the frame in the middle of each part, whatever it shows."""
+    """Yield the frame in the middle of each part, whatever it shows; raise a PlateError if none can be decoded."""
     photos = frames.photos(part[len(part) // 2] for part in parts if part)
     if (first := next(photos, None)) is None:
         raise undecodable(frames.movie.path, "none of its frames")

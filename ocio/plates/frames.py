@@ -35,13 +35,10 @@ class FrameSequence:
 
 
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
-    """Return the files of a single file's name, of a pattern (`FramePattern.parse`), or of a folder with one sequence.
-
-    An existing file of exactly this name is taken first, so it may hold `#` or `@`.
-    """
+    """Return the files of a single file's name, of a `FramePattern`, or of a folder that holds one sequence."""
     path = Path(pattern)
     kind = _kind(path)
-    if frames is None and kind == "file":
+    if frames is None and kind == "file":  # before patterns, so its name may hold # or @
         return FrameSequence((path,))
     parsed = _only_sequence(path) if kind == "folder" else FramePattern.parse(path)
     if parsed is None:

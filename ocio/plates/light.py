@@ -119,10 +119,7 @@ def _difference(written: dict[str, Any], light: PlateLight, depth: str) -> str:
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of an OpenEXR header by name, with its sample type.
-
-    Nothing is returned of a file that is not whole, or that another program wrote in another form with our attributes.
-    """
+    """Return the attributes and the sample type of an OpenEXR file that is whole and as we wrote it, else nothing."""
     source = oiio.ImageInput.open(str(path)) if path.is_file() else None
     if source is None:
         oiio_message()

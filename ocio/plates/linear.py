@@ -80,11 +80,9 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    The color is divided by alpha where the file stores the product, and multiplied by it after the LUT, as OpenEXR
-    requires of coverage. Unless `overwrite` is set, targets that exist are left alone, so that the same call resumes an
-    interrupted one. `workers` frames, by default at most one a core, are in memory. Raise a CRFNetError before any
-    frame is written if the output does not fit the depth, or a target exists that is not the whole linear frame of its
-    plate in the same light; at the end if frames failed.
+    Unless `overwrite` is set, targets that exist are left alone, so that the same call resumes an interrupted one.
+    `workers` frames, by default at most one a core, are in memory. Raise a CRFNetError before any frame is written if
+    the output does not fit the depth, or `check_finished` refuses a target; at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if workers is not None and workers < 1:
@@ -161,7 +159,7 @@ class _Conversion:
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
-        """Return matrix @ lut.apply(B) * scale, times coverage, and alpha: (H, W, 3 or 4), of the output's type."""
+        """Return matrix @ lut.apply(B) * scale, times coverage, as in OpenEXR, and alpha: (H, W, 3 or 4), to write."""
         height, width, _ = frame.samples.shape
         linear = np.empty((height, width, 3 if frame.alpha is None else 4), SAMPLE_TYPES[self.options.depth])
         peak = 0.0 if frame.alpha is None else float(np.abs(frame.alpha).max())  # OpenEXR does not bound it

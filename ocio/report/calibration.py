@@ -78,7 +78,7 @@ def calibration_provenance(calibration: Measured) -> tuple[str, ...]:
 
 
 def calibration_document(
-    calibration: Measured, files: OutputFiles, comparison: Mapping[str, float] | None = None
+    calibration: Measured, files: OutputFiles, comparison: Mapping[str, float] | None
 ) -> dict[str, Any]:
     """Return a measured response, ready for JSON; file names are relative to the folder."""
     own = _pair_document(calibration) if isinstance(calibration, PairCalibration) else _stack_document(calibration)

@@ -1,7 +1,4 @@
-"""The sheet of a calibration: the measured response, every frame's points, and their residuals.
-
-It needs matplotlib, which is an optional dependency.
-"""
+"""The sheet of a calibration: the measured response, every frame's points, and their residuals."""
 
 from pathlib import Path
 

@@ -54,7 +54,6 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
 def lut_document(response: ResponseFile) -> dict[str, Any]:
     """Return the contents of a LUT file, ready for JSON."""
     lut = response.table
-    first, last = lut.domain
     quarters = [channel.apply(np.array(QUARTERS)) for channel in lut.channels]
     return {
         "kind": "lut",
@@ -64,8 +63,8 @@ def lut_document(response: ResponseFile) -> dict[str, Any]:
         "channels": len(lut.channels),
         "converts": ["irradiance", "brightness"] if response.was_forward else ["brightness", "irradiance"],
         "length": len(lut.values),
-        "domain": [rounded(first), rounded(last)],
-        "range": [rounded(lut.values[0].min()), rounded(lut.values[-1].max())],
+        "domain": rounded(lut.domain),
+        "range": rounded([lut.values[0].min(), lut.values[-1].max()]),
         "at_quarters": rounded(quarters[0] if len(quarters) == 1 else quarters),
         "provenance": list(lut.comments),
     }

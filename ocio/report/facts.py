@@ -47,11 +47,8 @@ def curve_error_words(estimate: ResponseEstimate, phrases: Phrases = COMMAND) ->
 
 
 def shape_error_words(estimate: ResponseEstimate) -> str:
-    """Return in words how far the shape of the linear light is expected to be off; empty if that is not known.
-
-    It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
-    """
-    shape = estimate.shape_uncertainty
+    """Return in words how far the shape of the linear light is expected to be off; empty if that is not known."""
+    shape = estimate.shape_uncertainty  # NaN in estimates that an earlier version of the add-on stored
     return f"{beside_limits(shape, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
 
 

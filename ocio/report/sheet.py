@@ -1,7 +1,4 @@
-"""The sheet, one picture of an estimate: the curve with its band, the windows, and the plate before and after.
-
-It needs matplotlib, which is an optional dependency.
-"""
+"""The sheet, one picture of an estimate: the curve with its band, the windows, and the plate before and after."""
 
 import warnings
 from collections.abc import Iterator
@@ -47,12 +44,9 @@ DOT = "   ·   "
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9,
-    "axes.edgecolor": QUIET,
     "axes.linewidth": 0.8,
-    "axes.labelcolor": INK,
-    "xtick.color": QUIET,
-    "ytick.color": QUIET,
-    "text.color": INK,
+    **dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), QUIET),
+    **dict.fromkeys(("axes.labelcolor", "text.color"), INK),
     "text.parse_math": False,
 }
 
@@ -76,10 +70,7 @@ def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *,
 
 @contextmanager
 def sheet_figure(path: Path) -> Iterator[Figure]:
-    """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes.
-
-    Raise PlateError if the file cannot be written.
-    """
+    """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes."""
     with mpl.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # file names may hold any character
         mpl.rcdefaults()

@@ -3,7 +3,7 @@
 import argparse
 
 from . import parts
-from .parts import Commands, Parser, given, given_path
+from .parts import Commands, Parser, given_path
 
 #: The help of --no-sheet.
 NO_SHEET = "do not draw the sheet, the picture of the result"
@@ -68,8 +68,7 @@ ESTIMATE is a result of crfnet estimate: its folder, its JSON or a LUT. CONFIG i
 built into OpenColorIO, $OCIO, or the folder or executable of a Blender. It is not changed: the new config in FOLDER has
 everything in it and the color spaces of the plates, and finds the LUTs of CONFIG where they are."""
 
-INFO_EXAMPLES = """examples:
-  crfnet info look/plate01.spi1d"""
+INFO_EXAMPLES = "examples:\n  crfnet info look/plate01.spi1d"
 
 
 class _Version(argparse.Action):
@@ -103,7 +102,7 @@ def _add_estimate(commands: Commands) -> None:
     summary = "estimate the response of the camera that took a photograph"
     parser = parts.add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
     photos = "photograph, movie, or sequence such as shot.%%04d.png"
-    parser.add_argument("photos", nargs="+", type=given_path, metavar="PHOTO", help=photos)
+    parts.add_value(parser, "photos", "PHOTO", photos, given_path, nargs="+")
     parts.add_out(parser, "DIR", "folder for all files")
     parts.add_frames(parser, "estimate one response for each photograph, not one for all; PHOTO may be a folder")
     parts.add_flag(parser, "--forward", "also write the response itself as a LUT, from light to code values")
@@ -119,10 +118,10 @@ def _add_linearize(commands: Commands) -> None:
     parser = parts.add_command(commands, "linearize", summary, LINEARIZE_EXAMPLES)
     plates = "photograph, movie, folder with one sequence, or sequence such as shot.%%04d.png or shot.####.png"
     each = "; with --each photographs and folders"
-    parser.add_argument("plates", nargs="+", type=given, metavar="PLATES", help=plates + each)
+    parts.add_value(parser, "plates", "PLATES", plates + each, nargs="+")
     parts.add_out(parser, "PATTERN", "EXR file; for a sequence a name such as l.%%04d.exr; with --each a folder")
     lut = "response to use: a 1D LUT of any format that OpenColorIO reads"
-    parser.add_argument("--lut", type=given_path, metavar="FILE", help=lut)
+    parts.add_value(parser, "--lut", "FILE", lut, given_path)
     parts.add_frames(parser, "PLATES are photographs, each with its own response without --lut and --camera")
     parts.add_flag(parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values")
     parts.add_network(parser)
@@ -134,12 +133,12 @@ def _add_calibrate(commands: Commands) -> None:
     summary = "measure a camera's response from an exposure stack, or from raw files and their JPEGs"
     parser = parts.add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
     files = "frames of a stack; or raw files, their JPEGs, folders of both"
-    parser.add_argument("photos", nargs="+", type=given_path, metavar="FILE", help=files)
+    parts.add_value(parser, "photos", "FILE", files, given_path, nargs="+")
     parts.add_out(parser, "DIR", "folder for all files")
-    parts.add_text(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
-    parts.add_text(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: EXIF)")
+    parts.add_value(parser, "--name", "NAME", "name of the files and of the color space (default: the first file's)")
+    parts.add_value(parser, "--times", "LIST", "exposure times in seconds, in the order of the frames (default: EXIF)")
     compare = "response to compare with the measured one: the JSON of an estimate, or a LUT"
-    parser.add_argument("--compare", type=given_path, metavar="FILE", help=compare)
+    parts.add_value(parser, "--compare", "FILE", compare, given_path)
     parts.add_flag(parser, "--accept-edited", "accept files that a program has edited: the response is the program's")
     parts.add_flag(parser, "--no-sheet", NO_SHEET)
     parts.add_flag(parser, "--overwrite", parts.OVERWRITE)
@@ -153,16 +152,16 @@ def _add_camera(commands: Commands) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     addition = parts.add_action(actions, "add", "store a measured response")
     calibration = "the JSON file of crfnet calibrate, or of crfnet camera export"
-    addition.add_argument("--from-calibration", type=given_path, required=True, metavar="FILE", help=calibration)
-    parts.add_text(addition, "--name", "NAME", "name of the camera (default: FILE's)")
+    parts.add_value(addition, "--from-calibration", "FILE", calibration, given_path, required=True)
+    parts.add_value(addition, "--name", "NAME", "name of the camera (default: FILE's)")
     parts.add_flag(addition, "--overwrite", "replace the camera of this name")
     parts.add_action(actions, "list", "list your cameras and the packaged ones")
     show = parts.add_action(actions, "show", "show a camera and the uncertainty of its response")
     remove = parts.add_action(actions, "remove", "remove one of your cameras")
     export = parts.add_action(actions, "export", "write the response of a camera to a file")
     for action in (show, remove, export):
-        action.add_argument("name", type=given, metavar="NAME", help="the camera")
-    export.add_argument("out", type=given_path, metavar="OUT", help="a LUT file, or .json to hand the camera on")
+        parts.add_value(action, "name", "NAME", "the camera")
+    parts.add_value(export, "out", "OUT", "a LUT file, or .json to hand the camera on", given_path)
     parts.add_flag(export, "--overwrite", parts.OVERWRITE)
 
 
@@ -172,19 +171,16 @@ def _add_config(commands: Commands) -> None:
     parser = parts.add_command(commands, "config", summary, CONFIG_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     addition = parts.add_action(actions, "add", "write a new config: CONFIG with the color spaces of plates")
-    looks = "folder, JSON or LUT of crfnet estimate"
-    addition.add_argument("looks", nargs="+", type=given_path, metavar="ESTIMATE", help=looks)
-    addition.add_argument(
-        "--base", type=given, required=True, metavar="CONFIG", help="config to build on; it is not changed"
-    )
+    parts.add_value(addition, "looks", "ESTIMATE", "folder, JSON or LUT of crfnet estimate", given_path, nargs="+")
+    parts.add_value(addition, "--base", "CONFIG", "config to build on; it is not changed", required=True)
     parts.add_out(addition, "FOLDER", "folder for config.ocio and the LUTs")
     parts.add_flag(addition, "--overwrite", parts.OVERWRITE)
     listing = parts.add_action(actions, "list", "list the plates of a config")
-    listing.add_argument("config", type=given, metavar="CONFIG", help="config with plates")
+    parts.add_value(listing, "config", "CONFIG", "config with plates")
 
 
 def _add_info(commands: Commands) -> None:
     """Add `crfnet info`."""
     parser = parts.add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
-    parser.add_argument("lut", type=given_path, metavar="FILE", help="LUT that OpenColorIO reads")
+    parts.add_value(parser, "lut", "FILE", "LUT that OpenColorIO reads", given_path)
     parts.add_json(parser)

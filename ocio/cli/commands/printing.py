@@ -27,14 +27,9 @@ from ..streams import shown
 #: Seconds between two lines of progress without a terminal.
 LINE_SECONDS = 60
 
-NO_SHEET = "crfnet: no sheet is drawn, {}, or add --no-sheet"
-
 
 def prepare_matplotlib() -> bool:
-    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do.
-
-    Its list of fonts, which it would write into the home of the user, goes into a folder among the temporary files.
-    """
+    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do."""
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     reason = "matplotlib is absent: pip install 'crfnet[plot]'"
     if find_spec("matplotlib") is not None:
@@ -44,12 +39,12 @@ def prepare_matplotlib() -> bool:
             return True
         except OSError:
             reason = "no folder takes temporary files: set TMPDIR to one"
-    print(NO_SHEET.format(reason), file=sys.stderr)  # noqa: T201
+    print(f"crfnet: no sheet is drawn, {reason}, or add --no-sheet", file=sys.stderr)  # noqa: T201
     return False
 
 
 def _font_folder() -> str:
-    """Return a folder that only this user may enter; it lasts, because listing the fonts takes long."""
+    """Return a folder for the list of fonts, not in the user's home; it lasts, because listing the fonts takes long."""
     user = os.getuid() if hasattr(os, "getuid") else 0
     folder = Path(tempfile.gettempdir(), f"crfnet-matplotlib-{user}")
     with suppress(OSError):
