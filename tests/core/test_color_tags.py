@@ -120,10 +120,7 @@ class TestIccProfiles:
 
     @pytest.mark.parametrize(
         ("icc", "source"),
-        [
-            *((b"", ""), (bytes(200), DAMAGED), (b"acsp", DAMAGED)),
-            (profile({}, color=b"CMYK"), OTHER_COLORS),
-        ],
+        [(b"", ""), (bytes(200), DAMAGED), (b"acsp", DAMAGED), (profile({}, color=b"CMYK"), OTHER_COLORS)],
     )
     def test_profiles_of_other_colors_and_other_bytes_say_no_primaries(self, icc, source):
         assert read_icc(icc) == ColorTags(source=source)
@@ -177,11 +174,7 @@ class TestIccProfiles:
 
     @pytest.mark.parametrize(
         ("decode", "name", "transfer"),
-        [
-            ("SLog3", "S-Log3 S-Gamut3.Cine", "Sony S-Log3"),
-            ("Cineon", "Cineon", "Cineon log"),
-            ("Cineon", "sRGB", "log"),
-        ],
+        [("SLog3", "S-Log3 S-Gamut3", "Sony S-Log3"), ("Cineon", "Cineon", "Cineon log"), ("Cineon", "sRGB", "log")],
     )
     def test_the_name_says_which_log_curve_it_is(self, decode, name, transfer):
         light = getattr(colour.models, f"log_decoding_{decode}")
@@ -262,8 +255,7 @@ class TestOpenExr:
             ("srgb_p3d65_scene", DISPLAY_P3, "colorInteropID"),
             ("g22_adobergb_scene", ADOBE_RGB, "colorInteropID"),
             ("g26_xyzd65_display", None, "colorInteropID"),
-            ("unknown", None, ""),
-            ("data", None, ""),
+            *((name, None, "") for name in ("unknown", "data")),
         ],
     )
     def test_interop_names_are_read(self, name, primaries, source):

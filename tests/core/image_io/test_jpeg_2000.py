@@ -73,10 +73,7 @@ def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments
 @pytest.mark.parametrize(
     ("color", "expected"),
     [
-        *(
-            (method + bytes(2) + matrix_profile(DISPLAY_P3), (DISPLAY_P3, "", "ICC profile"))
-            for method in (b"\2", b"\3")
-        ),
+        *((head + matrix_profile(DISPLAY_P3), (DISPLAY_P3, "", "ICC profile")) for head in (b"\2\0\0", b"\3\0\0")),
         (b"\5\0\0" + struct.pack(">3HB", 9, 16, 0, 128), (REC2020, "PQ", "CICP")),
     ],
 )
