@@ -39,15 +39,8 @@ from tests.helpers.images import write_image
 colour = pytest.importorskip("colour")
 
 #: colour-science's names.
-NAMES = {
-    "sRGB": REC709,
-    "Display P3": DISPLAY_P3,
-    "Adobe RGB (1998)": ADOBE_RGB,
-    "ProPhoto RGB": PROPHOTO,
-    "ITU-R BT.2020": REC2020,
-    "ACES2065-1": AP0,
-    "ACEScg": AP1,
-}
+NAMES = {"sRGB": REC709, "Display P3": DISPLAY_P3, "Adobe RGB (1998)": ADOBE_RGB, "ProPhoto RGB": PROPHOTO}
+NAMES |= {"ITU-R BT.2020": REC2020, "ACES2065-1": AP0, "ACEScg": AP1}
 
 GRAY = np.full((16, 16, 3), 128, np.uint8)
 
