@@ -39,15 +39,8 @@ from tests.helpers.images import write_image
 colour = pytest.importorskip("colour")
 
 #: colour-science's names.
-NAMES = {
-    "sRGB": REC709,
-    "Display P3": DISPLAY_P3,
-    "Adobe RGB (1998)": ADOBE_RGB,
-    "ProPhoto RGB": PROPHOTO,
-    "ITU-R BT.2020": REC2020,
-    "ACES2065-1": AP0,
-    "ACEScg": AP1,
-}
+NAMES = {"sRGB": REC709, "Display P3": DISPLAY_P3, "Adobe RGB (1998)": ADOBE_RGB, "ProPhoto RGB": PROPHOTO}
+NAMES |= {"ITU-R BT.2020": REC2020, "ACES2065-1": AP0, "ACEScg": AP1}
 
 GRAY = np.full((16, 16, 3), 128, np.uint8)
 
@@ -120,10 +113,7 @@ class TestIccProfiles:
 
     @pytest.mark.parametrize(
         ("icc", "source"),
-        [
-            *((b"", ""), (bytes(200), DAMAGED), (b"acsp", DAMAGED)),
-            (profile({}, color=b"CMYK"), OTHER_COLORS),
-        ],
+        [(b"", ""), (bytes(200), DAMAGED), (b"acsp", DAMAGED), (profile({}, color=b"CMYK"), OTHER_COLORS)],
     )
     def test_profiles_of_other_colors_and_other_bytes_say_no_primaries(self, icc, source):
         assert read_icc(icc) == ColorTags(source=source)
@@ -177,11 +167,7 @@ class TestIccProfiles:
 
     @pytest.mark.parametrize(
         ("decode", "name", "transfer"),
-        [
-            ("SLog3", "S-Log3 S-Gamut3.Cine", "Sony S-Log3"),
-            ("Cineon", "Cineon", "Cineon log"),
-            ("Cineon", "sRGB", "log"),
-        ],
+        [("SLog3", "S-Log3 S-Gamut3", "Sony S-Log3"), ("Cineon", "Cineon", "Cineon log"), ("Cineon", "sRGB", "log")],
     )
     def test_the_name_says_which_log_curve_it_is(self, decode, name, transfer):
         light = getattr(colour.models, f"log_decoding_{decode}")
@@ -262,8 +248,7 @@ class TestOpenExr:
             ("srgb_p3d65_scene", DISPLAY_P3, "colorInteropID"),
             ("g22_adobergb_scene", ADOBE_RGB, "colorInteropID"),
             ("g26_xyzd65_display", None, "colorInteropID"),
-            ("unknown", None, ""),
-            ("data", None, ""),
+            *((name, None, "") for name in ("unknown", "data")),
         ],
     )
     def test_interop_names_are_read(self, name, primaries, source):

@@ -48,9 +48,7 @@ def test_shape_of_the_picture(width, height, shape):
         (6000, 4000, OWN_CAMERA | {"exif_size": (6000, 4000), "software": "GIMP 2.8"}, False),
         *((5168, 3448, {}, False), (4240, 2830, {}, None), (2048, 1536, {}, True)),
         (2048, 1536, {"make": "Sony", "model": "D6503"}, None),
-        (1280, 720, {}, True),
-        (1280, 720, {"file_format": "DPX"}, None),
-        (0, 0, {}, None),
+        *((1280, 720, {}, True), (1280, 720, {"file_format": "DPX"}, None), (0, 0, {}, None)),
         # a program that scales may rewrite the size in EXIF
         (493, 328, OWN_CAMERA | {"exif_size": (493, 328)}, True),
         (640, 480, OWN_CAMERA | IJG | {"exif_size": (640, 480), "has_jfif": True}, True),

@@ -80,10 +80,8 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
 @pytest.mark.parametrize(
     ("array", "channels"),
     [
-        (CODES, [0, 1, 2]),
-        (with_alpha(CODES), [0, 1, 2]),
-        (CODES[..., 0], [0] * 3),
-        (with_alpha(CODES[..., :1]), [0] * 3),
+        *((CODES, [0, 1, 2]), (with_alpha(CODES), [0, 1, 2])),
+        *((CODES[..., 0], [0, 0, 0]), (with_alpha(CODES[..., :1]), [0, 0, 0])),
     ],
 )
 def test_an_image_of_pillow_knows_its_order(array, channels):

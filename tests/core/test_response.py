@@ -79,10 +79,7 @@ def test_nearest_increasing_is_the_projection(samples):
         *((ResponseCurve.from_samples, row, "curve_dark") for row in ([1.0, 0.0], [0.5, 0.5])),
         (ResponseCurve, np.zeros(SAMPLES), "curve_not_strict"),
         (ResponseCurve, np.linspace(0, 1, 10), "curve_shape"),
-        *(
-            (ResponseCurve.gamma, number, "curve_exponent")
-            for number in (0, -1, np.nan, np.inf, True, "2", None, [2.2])
-        ),
+        *((ResponseCurve.gamma, no, "curve_exponent") for no in (0, -1, np.nan, np.inf, True, "2", None, [2.2])),
         *((make, "x", "not_numbers") for make in (ResponseCurve, ResponseCurve.from_samples)),
     ],
 )

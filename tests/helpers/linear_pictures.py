@@ -38,7 +38,7 @@ def swatch_means(pixels, size):
     return cells[:, quarter:-quarter, :, quarter:-quarter].astype(np.float64).mean(axis=(1, 3))
 
 
-def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), black=1024, white=65000, orientation=1):
+def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1)):
     """Write the Bayer mosaic that a camera takes of a scene-linear Rec.709 scene, (H, W, 3), as a 16-bit DNG 1.4.
 
     The scene stands under a light of this colour, for which the camera is balanced; a gray of 1 saturates its most
@@ -46,6 +46,7 @@ def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), bla
     """
     to_camera = CAMERAS[camera] @ XYZ * light
     neutral = to_camera.sum(axis=1)
+    black, white = 1024, 65000
     sensed = np.clip(scene @ (to_camera / neutral.max()).T, 0, 1)
     mosaic = np.zeros(scene.shape[:2], dtype="<u2")
     for index, name in enumerate(pattern):
@@ -62,7 +63,7 @@ def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), bla
         271: (ASCII, "Formula"),
         272: (ASCII, camera),
         273: (LONG, 0),  # behind the directory
-        274: (SHORT, orientation),
+        274: (SHORT, 1),  # upright
         277: (SHORT, 1),
         278: (LONG, height),
         279: (LONG, mosaic.nbytes),

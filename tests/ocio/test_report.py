@@ -18,9 +18,8 @@ CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D
 
 @pytest.fixture(scope="module")
 def found(plate, fixed_model):
-    return estimate_response(
-        read_photo(plate), network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2)
-    )
+    network, options = ResponseNetwork.load(fixed_model), AnalysisOptions(windows=2)
+    return estimate_response(read_photo(plate), network=network, options=options)
 
 
 @pytest.fixture
@@ -29,15 +28,8 @@ def estimate(found):
 
     def make(*, families=None, **fields):
         shares = dict.fromkeys(Family, 0.0) | (families or {Family.PHONE: 0.03, Family.CAMERA: 0.9, Family.FILM: 0.07})
-        usual = {
-            "verdict": Verdict.USABLE,
-            "uncertainty": 1.25,
-            "shape_uncertainty": 0.1,
-            "families": shares,
-            "prior": "camera",
-            "origins": (file_origin(CANON),),
-            "warnings": (),
-        }
+        usual = {"verdict": Verdict.USABLE, "uncertainty": 1.25, "shape_uncertainty": 0.1, "families": shares}
+        usual |= {"prior": "camera", "origins": (file_origin(CANON),), "warnings": ()}
         return dataclasses.replace(found, **(usual | fields))
 
     return make

@@ -57,8 +57,7 @@ def test_frames_without_times_of_different_bit_depths_or_cameras_are_refused(tmp
     [
         ([1, 2, 3], "times_count"),
         ([1.0] * 6, "exposures_span"),
-        ([1, 1, 1, 1, 1, 1e4], "exposures_gap"),
-        ([1e-308, 1, 2, 4, 8, 1e308], "exposures_gap"),
+        *((times, "exposures_gap") for times in ([1, 1, 1, 1, 1, 1e4], [1e-308, 1, 2, 4, 8, 1e308])),
         *(([1, 2, wrong, 8, 16, 32], "bad_seconds") for wrong in (0, -4, np.nan, np.inf, "4")),
         ([32, 16, 8, 4, 2, 1], "scene_moved"),
     ],
@@ -79,6 +78,7 @@ def test_edited_frames_are_refused_unless_accepted(stack):
     [
         (lambda codes, number, one: 255 - codes, "no_single_curve"),
         (lambda codes, number, one: codes * np.linspace(0.6, 1.1, len(codes))[:, None, None], "scene_moved"),
+        (lambda codes, number, one: np.roll(codes, (41 * number, 59 * number), axis=(0, 1)), "scene_moved"),
         (lambda codes, number, one: np.roll(codes, 60 * (number > 2), axis=0), "frame_mistimed"),
         (lambda codes, number, one: 0 * codes + 40 * number, "codes_unseen"),
         (lambda codes, number, one: one, "frame_twice"),
@@ -106,10 +106,6 @@ def test_a_mistimed_frame_is_named(stack, off, direction):
     assert problem.code == "frame_mistimed"
     assert (problem.facts["path"], problem.facts["direction"]) == ("stack_03.jpg", direction)
     assert problem.facts["stops"] == pytest.approx(abs(off), abs=0.1)
-
-
-def test_a_scene_that_moves_is_refused(stack):
-    assert refusal(stack(frames=5, shifts=[(41 * i, 59 * i) for i in range(5)])).code == "scene_moved"
 
 
 def test_a_stack_whose_only_other_exposure_shows_another_scene_is_refused(tmp_path):

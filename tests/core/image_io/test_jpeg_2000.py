@@ -59,8 +59,7 @@ def test_alpha_is_associated_if_the_file_says_so(tmp_path, kind, is_associated):
         *(({"color": b"\1\0\0" + struct.pack(">I", space)}, "other_colors") for space in (12, 14)),
         ({"boxes": PALETTE}, "palette"),
         ({"codes": colored_ramp(8)[:47, :, :2]}, "coding_not_read"),
-        ({"components": [(0x87, 1, 1)]}, "coding_not_read"),
-        ({"components": [(7, 1, 1), (7, 2, 2), (7, 2, 2)]}, "coding_not_read"),
+        *(({"components": each}, "coding_not_read") for each in ([(0x87, 1, 1)], [(7, 1, 1), (7, 2, 2), (7, 2, 2)])),
     ],
 )
 def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments, code):
@@ -73,10 +72,7 @@ def test_what_openimageio_returns_as_other_pixels_is_refused(tmp_path, arguments
 @pytest.mark.parametrize(
     ("color", "expected"),
     [
-        *(
-            (method + bytes(2) + matrix_profile(DISPLAY_P3), (DISPLAY_P3, "", "ICC profile"))
-            for method in (b"\2", b"\3")
-        ),
+        *((head + matrix_profile(DISPLAY_P3), (DISPLAY_P3, "", "ICC profile")) for head in (b"\2\0\0", b"\3\0\0")),
         (b"\5\0\0" + struct.pack(">3HB", 9, 16, 0, 128), (REC2020, "PQ", "CICP")),
     ],
 )

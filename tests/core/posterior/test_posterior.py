@@ -160,8 +160,7 @@ def test_the_band_holds_nine_tenths_of_the_weight():
     [
         ((Family.CAMERA,) * 2, 0.12, Verdict.USABLE),
         ((Family.CAMERA,) * 2, 0.4, Verdict.DO_NOT_TRUST),
-        ((Family.LINEAR,) * 2, 0.02, Verdict.DO_NOT_TRUST),
-        ((Family.LOG,) * 2, 0.02, Verdict.DO_NOT_TRUST),
+        *(((family,) * 2, 0.02, Verdict.DO_NOT_TRUST) for family in (Family.LINEAR, Family.LOG)),
     ],
 )
 def test_the_verdict_follows_the_expected_stops_and_the_family(families, spread, expected):

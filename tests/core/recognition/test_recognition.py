@@ -156,9 +156,7 @@ def test_a_rendering_is_recognized_by_its_metadata():
 @pytest.mark.parametrize(
     ("fields", "is_sent"),
     [
-        ({}, True),
-        ({"width": 1280, "height": 960}, True),
-        ({"width": 4000, "height": 3000}, False),
+        *(({}, True), ({"width": 1280, "height": 960}, True), ({"width": 4000, "height": 3000}, False)),
         ({"make": "Canon", "model": "Canon EOS 6D", "exif_size": (3200, 2400)}, False),
         (tables(90), False),
         ({"luma_table": (), "chroma_table": (), "file_format": "PNG"}, False),

@@ -81,11 +81,7 @@ def test_times_from_a_list(crfnet, stack, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (("--name", "a/b"), "not_a_file_name"),
-        (("--compare", "none.json"), "not_opened"),
-    ],
+    ("arguments", "code"), [(("--name", "a/b"), "not_a_file_name"), (("--compare", "none.json"), "not_opened")]
 )
 def test_bad_input_is_refused(crfnet, stack, tmp_path, arguments, code):
     assert crfnet("calibrate", *stack, "--out", tmp_path / "out", *arguments).refusal == code

@@ -36,8 +36,7 @@ def test_other_pictures_are_answered_with_what_helps(crfnet, tmp_path, pixels, k
 @pytest.mark.parametrize(
     ("name", "tag", "code"),
     [
-        ("scan.dpx", {"dpx__Transfer": "Printing density"}, "tagged_encoding"),
-        ("scan.dpx", {"dpx__Transfer": "Logarithmic"}, "tagged_encoding"),
+        *(("scan.dpx", {"dpx__Transfer": kind}, "tagged_encoding") for kind in ("Printing density", "Logarithmic")),
         ("pq.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "tagged_color_space"),
         ("hlg.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "tagged_color_space"),
         ("linear.png", {"CICP": (oiio.TypeDesc("int[4]"), (1, 8, 0, 1))}, "tagged_linear"),

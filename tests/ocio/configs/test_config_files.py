@@ -102,8 +102,7 @@ class TestLoading:
     @pytest.mark.parametrize(
         ("content", "code"),
         [
-            (b"", "config_refused"),
-            (b"no config", "config_refused"),
+            *((content, "config_refused") for content in (b"", b"no config")),
             (bytes(MAX_CONFIG_SIZE + 1), "config_unreadable"),
             (PORTABLE.replace("name: crfnet", "name: Voigtl\u00e4nder").encode("latin-1"), "config_unreadable"),
             *((aliases(3).encode(), "config_too_many"), (aliases(9).encode(), "config_too_many")),

@@ -87,10 +87,8 @@ class TestBlender:
 @pytest.mark.parametrize(
     ("name", "code"),
     [
-        ("nowhere", "config_unknown"),
-        ("ocio://nowhere", "config_unknown"),
-        ("nowhere.ocio", "no_such_file"),
-        ("a.ocioz", "config_archive"),
+        *((name, "config_unknown") for name in ("nowhere", "ocio://nowhere")),
+        *(("nowhere.ocio", "no_such_file"), ("a.ocioz", "config_archive")),
     ],
 )
 def test_anything_else_is_refused(name, code, tmp_path, monkeypatch):

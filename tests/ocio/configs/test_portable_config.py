@@ -54,10 +54,7 @@ def test_its_displays_show_white_as_white(display):
     [
         ("shot_plate01.0001.png", "CRF plate01"),
         ("/a/shot_plate01x0001xpng", "Non-Color"),
-        ("a.PNG", "sRGB"),
-        ("a.jpeg", "sRGB"),
-        ("a.exr", "scene_linear"),
-        ("a.EXR", "scene_linear"),
+        *(("a.PNG", "sRGB"), ("a.jpeg", "sRGB"), ("a.exr", "scene_linear"), ("a.EXR", "scene_linear")),
         ("a.dpx", "Non-Color"),
     ],
 )

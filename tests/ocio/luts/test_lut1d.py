@@ -30,10 +30,12 @@ def test_a_large_array_has_the_values_of_its_rows(domain):
     np.testing.assert_array_equal(lut.apply(pixels), np.stack([lut.apply(row) for row in pixels]))
 
 
-def test_apply_and_its_inverse_over_a_domain():
+def test_apply_also_of_integers_and_its_inverse_over_a_domain():
     lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
     assert lut.apply([-2, -1, -0.5, 0, 0.5, 1, 2]).tolist() == [-1, -1, -0.5, 0, 2, 4, 4]
     assert lut.apply_inverse([-2, -0.5, 0, 2, 4, 9, np.nan]).tolist() == [-1, -0.5, 0, 0.5, 1, 1, -1]
+    codes = np.uint8([0, 51, 255])
+    np.testing.assert_allclose(Lut1D([0, 1], domain=(0, 255)).apply(codes), [0, 0.2, 1], atol=1e-6)
 
 
 def test_pixels_keep_their_shape_and_are_not_written():
@@ -175,8 +177,3 @@ def test_floating_point_codes_are_refused_and_light_has_no_bound(true_response, 
     with refused(LutError, "lut_pixels"):  # gray, of which the first columns would be R, G and B
         RgbLut1D((lut, lut, lut)).apply(np.zeros((8, 9)))
     assert np.nanmax(lut.apply_inverse(codes)) == pytest.approx(1.125)
-
-
-def test_integers_within_the_domain_are_taken():
-    lut = Lut1D(np.linspace(0, 1, 256), domain=(0, 255))
-    np.testing.assert_allclose(lut.apply(np.array([0, 51, 255], np.uint8)), [0, 0.2, 1], atol=1e-6)

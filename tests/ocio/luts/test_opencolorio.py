@@ -21,10 +21,11 @@ CODES = np.linspace(0, 1, 256)
 IDENTITY = "2\n0 1\n0 1\n"
 
 
-def clf(*, attributes="", before="", after="", rows=ROWS, depth="32f", columns=1, separator="\n"):
+def clf(*, attributes="", before="", rows=ROWS, depth="32f"):
+    entries = "\n".join(rows)
     return (
         f'<ProcessList id="x" compCLFversion="3.0">{before}<LUT1D inBitDepth="32f" outBitDepth="{depth}" {attributes}>'
-        f'<Array dim="{len(rows)} {columns}">{separator.join(rows)}</Array></LUT1D>{after}</ProcessList>\n'
+        f'<Array dim="{len(rows)} 1">{entries}</Array></LUT1D></ProcessList>\n'
     )
 
 

@@ -172,8 +172,7 @@ HEVC_ROWS = {"codec": "libx265", "options": {"x265-params": "log-level=error:key
     [
         ("a.mov", (0, 0.2), {"codec": "prores_ks", "form": "yuv422p10le"}, 11),
         ("a.mkv", (0.4, 0.5), {"codec": "ffv1", "options": {"level": "3", "slicecrc": "1"}}, 12),
-        ("a.mp4", (0, 1), ROWS, 16),
-        ("a.mp4", (0.5, 0.6), ROWS, 16),
+        *(("a.mp4", part, ROWS, 16) for part in ((0, 1), (0.5, 0.6))),
         ("a.ts", (0.5, 0.9), ROWS, 16),
         ("a.mp4", (0.3, 0.9), HEVC_ROWS, 16),
         ("a.avi", (0.01, 1), {"codec": "ffv1", "options": {"level": "3", "slicecrc": "1", "g": "1"}}, 11),

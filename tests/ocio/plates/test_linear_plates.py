@@ -17,14 +17,9 @@ WIDE = np.random.default_rng(1).integers(0, 65536, (70, 90, 3)).astype(np.uint16
 @pytest.mark.parametrize(
     ("name", "codes", "options"),
     [
-        ("a.jpg", SMALL[..., :3], {}),
-        ("a.png", SMALL[..., :3], {}),
-        ("gray.png", SMALL[..., :1], {}),
-        ("a16.png", WIDE, {}),
-        ("a.tif", SMALL[..., :3], {}),
-        ("a16.tif", WIDE, {}),
-        ("a10.dpx", WIDE, {"oiio__BitsPerSample": 10}),
-        ("a12.dpx", WIDE, {"oiio__BitsPerSample": 12}),
+        *((name, SMALL[..., :3], {}) for name in ("a.jpg", "a.png", "a.tif")),
+        *(("gray.png", SMALL[..., :1], {}), ("a16.png", WIDE, {}), ("a16.tif", WIDE, {})),
+        *((f"a{bits}.dpx", WIDE, {"oiio__BitsPerSample": bits}) for bits in (10, 12)),
         ("a.webp", SMALL[..., :3], {"Compression": "lossless"}),
         ("encoded.exr", SMALL[..., :3].astype(np.float32) / 200 - 0.1, {}),
         ("alpha.exr", np.sort(SMALL.astype(np.float32) + 1, axis=2) / 256, {}),
@@ -104,13 +99,9 @@ def test_metadata_has_the_names_of_openexr(tmp_path, out):
 
 
 def test_time_code_and_rate_are_kept(tmp_path, out):
-    plate = write_image(
-        tmp_path / "a.exr",
-        SMALL[..., :3].astype(np.float32) / 255,
-        smpte__TimeCode=(oiio.TypeDesc("timecode"), (18356486, 7)),
-        FramesPerSecond=(oiio.TypeDesc("rational"), (24000, 1001)),
-        PixelAspectRatio=2.0,
-    )
+    rate, aspect = (oiio.TypeDesc("rational"), (24000, 1001)), {"PixelAspectRatio": 2.0}
+    times = {"smpte__TimeCode": (oiio.TypeDesc("timecode"), (18356486, 7)), "FramesPerSecond": rate}
+    plate = write_image(tmp_path / "a.exr", SMALL[..., :3].astype(np.float32) / 255, **times, **aspect)
     linearize(plate, out / "a.exr", LUT, is_encoded=True)
     result, expected = attributes(read_exr(out / "a.exr")[1]), attributes(read_exr(plate)[1])
     assert result["smpte:TimeCode"] == expected["smpte:TimeCode"]
