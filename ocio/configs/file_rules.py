@@ -75,14 +75,17 @@ def rule_regex(patterns: Iterable[str]) -> str:
 def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
     """Put the file rule `name` of a plate before all others of a config, in place; return whether it leads to `space`.
 
-    Where rules of other plates lead one of the files to another space, none gets the file: all these rules then lead to
-    the space that the file has without them, and stay, so that a third plate of the name finds them.
+    Where rules of other plates lead one of the files to another space, none gets the file: all these rules then stand
+    behind all others and change nothing; there a third plate of the name finds them.
     """
-    usual = [each for pattern in patterns if (each := _release(config, pattern, space))]
+    is_shared = [_release(config, pattern, space) for pattern in patterns]
     rules = config.getFileRules()
-    rules.insertRule(0, name, next(iter(usual), space), rule_regex(patterns))
+    if any(is_shared):
+        _insert_last(rules, name, rule_regex(patterns))
+    else:
+        rules.insertRule(0, name, space, rule_regex(patterns))
     config.setFileRules(rules)
-    return not usual
+    return not any(is_shared)
 
 
 def color_space_of_file(config: OCIO.Config, name: str) -> str:
@@ -93,32 +96,33 @@ def color_space_of_file(config: OCIO.Config, name: str) -> str:
 
 
 def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
-    """Return the color space of each file rule of a plate's color space, by the rule's regular expression."""
+    """Return the color space of each file rule of a plate that changes it, by the rule's regular expression."""
     rules, names = config.getFileRules(), (space, space + LINEAR_SUFFIX)
+    usual = rules.getColorSpace(rules.getNumEntries() - 1)
     indices = [index for index in range(rules.getNumEntries()) if rules.getName(index) in names]
-    return {rules.getRegex(index): rules.getColorSpace(index) for index in indices}
+    spaces = {rules.getRegex(index): rules.getColorSpace(index) for index in indices}
+    return {regex: space for regex, space in spaces.items() if space != usual}
 
 
-def _release(config: OCIO.Config, pattern: str, space: str) -> str:
-    """Take the files of a pattern from other plates whose rules lead them to another space than `space`.
-
-    Return the space that they have without these rules; an empty text if there are none.
-    """
+def _release(config: OCIO.Config, pattern: str, space: str) -> bool:
+    """Take the files of a pattern from plates whose rules lead them to another space; return whether there are some."""
     rules, same, shared = config.getFileRules(), _same_files(pattern), list[tuple[int, str, str]]()
     for index in range(rules.getNumEntries() - 1):  # the last one is the default
         name, regex = rules.getName(index), rules.getRegex(index)
         if same.search(regex) and _is_of_plate(config, name) and rules.getColorSpace(index) != space:
             shared.append((index, name, regex))
-    if not shared:
-        return ""
     for index, *_ in reversed(shared):
         rules.removeRule(index)
+    for _, name, regex in shared:
+        _insert_last(rules, name, regex)
     config.setFileRules(rules)
-    usual = color_space_of_file(config, re.sub(r"[*?#]", "1", pattern))
-    for index, name, regex in shared:
-        rules.insertRule(index, name, usual, regex)
-    config.setFileRules(rules)
-    return usual
+    return bool(shared)
+
+
+def _insert_last(rules: OCIO.FileRules, name: str, regex: str) -> None:
+    """Put a rule behind all others, to the space of any other file."""
+    last = rules.getNumEntries() - 1
+    rules.insertRule(last, name, rules.getColorSpace(last), regex)
 
 
 def _same_files(pattern: str) -> re.Pattern[str]:

@@ -97,6 +97,7 @@ def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace
     for space in spaces:
         _add_color_space(config, space)
         if config.getMajorVersion() < 2:
+            without += space.file_patterns
             continue
         linear = space.linear_primaries and linear_space_name(config, space.linear_primaries)
         rules = [(space.name, space.name, space.file_patterns)]

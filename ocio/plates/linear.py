@@ -246,7 +246,7 @@ def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequ
     if not sequence.numbers:
         return first
     numbers = format_frames([n for n, target in zip(sequence.numbers, targets, strict=True) if target in failures])
-    others = " and the others are written" if len(failed) < len(targets) else ""
+    others = "; the others are written" if len(failed) < len(targets) else ""
     gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
     facts = {"count": len(failed), "total": len(targets), "frames": numbers, "others": others, "gaps": gaps}
     return PlateError("frames_failed", **facts, first=first)

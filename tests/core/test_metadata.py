@@ -16,7 +16,7 @@ from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
-EXIF = {"Make": "Canon", "Model": "Canon EOS 20D", "Software": "Adobe Photoshop CS6"}
+EXIF: dict[str, object] = {"Make": "Canon", "Model": "Canon EOS 20D", "Software": "Adobe Photoshop CS6"}
 EXIF |= {"Exif__PhotographicSensitivity": 200, "Exif__PixelXDimension": 3504, "Exif__PixelYDimension": 2336}
 OWN_TABLE = (3,) * 64
 

@@ -119,6 +119,16 @@ def test_a_rule_of_an_earlier_crfnet_is_of_the_same_files(tmp_path):
     assert space_of(loaded(two.path), "sky.0001.png") == "sRGB - Display"
 
 
+def test_files_of_several_plates_follow_the_rules_of_the_base(tmp_path):
+    base = portable_config([])
+    (rules := base.getFileRules()).insertRule(0, "by shot", "ACEScct", ".*sh010.*")
+    base.setFileRules(rules)
+    (tmp_path / "base.ocio").write_text(base.serialize())
+    one = add(tmp_path / "base.ocio", tmp_path / "one", write_look(tmp_path / "a"))
+    result = loaded(add(one.path, tmp_path / "two", write_look(tmp_path / "b")).path)
+    assert [space_of(result, f"/{shot}/plate01.jpg") for shot in ("sh010", "sh020")] == ["ACEScct", "sRGB"]
+
+
 def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path):
     look = write_look(tmp_path / "a", interop_id="lin_ap1_scene")
     done = add(STUDIO, tmp_path / "show", look, write_look(tmp_path / "b"))
