@@ -111,12 +111,14 @@ def _release(config: OCIO.Config, pattern: str, space: str) -> bool:
         name, regex = rules.getName(index), rules.getRegex(index)
         if same.search(regex) and _is_of_plate(config, name) and rules.getColorSpace(index) != space:
             shared.append((index, name, regex))
+    if not shared:
+        return False
     for index, *_ in reversed(shared):
         rules.removeRule(index)
     for _, name, regex in shared:
         _insert_last(rules, name, regex)
     config.setFileRules(rules)
-    return bool(shared)
+    return True
 
 
 def _insert_last(rules: OCIO.FileRules, name: str, regex: str) -> None:
