@@ -111,6 +111,11 @@ def atomic_write_text(
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
+def escaped_name(path: str | Path) -> str:
+    """Return a path as text that every program reads; bytes that are not UTF-8 become escapes of six characters."""
+    return str(path).encode(errors="backslashreplace").decode()
+
+
 def cut_to_bytes(name: str, most: int) -> str:
     """Return a file's name cut to at most `most` bytes, between two characters; other bytes are left out."""
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import OpenImageIO as oiio
 
-from crfnet_core.photograph.photo import Photo, upright
+from crfnet_core.photograph.photo import UPRIGHT, Photo, upright
 from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 
 from ..errors import PlateError
@@ -166,5 +166,5 @@ def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
     _check_form(movie, number, frame)
     codes = upright(rgb_codes(frame, movie.picture.coding, 2**movie.bit_depth - 1), movie.picture.turn)
     name = str(movie.path.with_name(f"{movie.path.name} frame {number}"))
-    metadata = movie.file_metadata
+    metadata = replace(movie.file_metadata, is_turned=movie.picture.turn != UPRIGHT)
     return Photo.from_array(codes, color_order="RGB", bit_depth=movie.bit_depth, name=name, metadata=metadata)

@@ -14,6 +14,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.files import escaped_name
 from crfnet_core.photograph.image_io.dpx_files import check_dpx
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, FILL_ORDER, RAW_SUFFIXES, file_kind
 from crfnet_core.photograph.image_io.header_checks import (
@@ -170,8 +171,7 @@ def _opened(path: Path) -> Iterator[_OpenFile | CodeValues]:
             with _opened_kind(path, kind) as file:
                 yield file
     except UnicodeEncodeError as problem:
-        name = str(path).encode(errors="backslashreplace").decode()  # as the command prints such names
-        raise PhotoError("name_not_utf8", path=name) from problem
+        raise PhotoError("name_not_utf8", path=escaped_name(path)) from problem
     except OSError as problem:
         raise PhotoError("cannot_open_photograph", path=path, problem=problem.strerror) from problem
 

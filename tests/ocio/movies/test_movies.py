@@ -256,7 +256,7 @@ def test_a_change_midway_is_refused(tmp_path, change):
 
 
 @pytest.mark.parametrize(("degrees", "quarters"), [(90, 1), (180, 2), (270, 3)])
-def test_frames_are_upright(tmp_path, degrees, quarters):
+def test_frames_are_upright_and_say_so(tmp_path, degrees, quarters):
     image = next(pictures(1))
     paths = [tmp_path / "stored.mov", tmp_path / "turned.mov"]
     for path, angle in zip(paths, (0, degrees), strict=True):
@@ -268,6 +268,7 @@ def test_frames_are_upright(tmp_path, degrees, quarters):
             frame = av.VideoFrame.from_ndarray(image, format="rgb24")
             container.mux([*stream.encode(frame), *stream.encode()])
     stored, turned = (MovieFrames.find(path) for path in paths)
+    assert [next(frames.photos([1]))[1].metadata.is_turned for frames in (stored, turned)] == [False, True]
     frame = next(turned.loaders([0]))()
     assert frame.samples.shape[:2] == turned.movie.picture.size[::-1] == (frame.header.height, frame.header.width)
     np.testing.assert_array_equal(frame.samples, np.rot90(next(stored.loaders([0]))().samples, quarters))
