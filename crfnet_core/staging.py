@@ -89,11 +89,16 @@ def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
     """Return a new temporary folder and the locked file in it."""
     while True:
         temporary = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))  # with mode 0700
-        with suppress(FileNotFoundError):  # another process took the folder for an abandoned one, and removed it
+        try:
             file = (temporary / _LOCK).open("wb")
-            if _has_lock(file) and _is_there(file, temporary):
-                return temporary, file
-            file.close()
+        except FileNotFoundError:  # another process took the folder for an abandoned one, and removed it
+            continue
+        except OSError:
+            temporary.rmdir()
+            raise
+        if _has_lock(file) and _is_there(file, temporary):
+            return temporary, file
+        file.close()
 
 
 def _has_lock(file: IO[Any]) -> bool:

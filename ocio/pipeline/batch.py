@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.files import cut_to_bytes
+from crfnet_core.files import cut_to_bytes, escaped_name
 
 from ..defaults import CONFIG_NAME
 from ..errors import PlateError, error_of_file
@@ -95,6 +95,11 @@ class Task:
     options: str
 
     @property
+    def name(self) -> str:
+        """The path of the photograph as its record names it."""
+        return escaped_name(self.photo)
+
+    @property
     def place(self) -> str:
         """The path of the photograph by which its record is found."""
         return place_of(self.photo, self.batch.out)
@@ -114,7 +119,7 @@ class Task:
     ) -> PhotographRecord:
         """Return the record of this photograph, whose files are whole, and of its estimate if there is one."""
         record = PhotographRecord(
-            photograph=str(self.photo),
+            photograph=self.name,
             place=self.place,
             options=self.options,
             folder=self.folder.as_posix(),
@@ -142,7 +147,7 @@ class Task:
     def failure(self, problem: BaseException) -> PhotographRecord:
         """Return the record of a problem; an interruption goes on."""
         error = str(error_of_file(problem, self.photo))
-        return PhotographRecord(photograph=str(self.photo), place=self.place, options=self.options, error=error)
+        return PhotographRecord(photograph=self.name, place=self.place, options=self.options, error=error)
 
     def is_done(self, record: PhotographRecord | None) -> bool:
         """Return whether a record says that this photograph needs no work, and its files are there, frames whole."""
@@ -226,5 +231,5 @@ def _stems(photo: Path) -> Iterator[str]:
 def place_of(photo: Path, out: Path) -> str:
     """Return the path from the output folder to a photograph, wherever a command runs and both are moved together."""
     with suppress(ValueError):  # of two drives
-        return Path(os.path.relpath(real_place(photo), os.path.realpath(out))).as_posix()
-    return real_place(photo).as_posix()
+        return escaped_name(Path(os.path.relpath(real_place(photo), os.path.realpath(out))).as_posix())
+    return escaped_name(real_place(photo).as_posix())

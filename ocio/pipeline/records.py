@@ -6,7 +6,7 @@ several records of one photograph, the last holds.
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
@@ -100,11 +100,11 @@ class RecordFile:
             raise PlateError("not_records", path=self.path) from problem
         return {record.place: record for record in records}
 
-    def append(self, record: PhotographRecord) -> None:
-        """Append a record, and see that it is on the disk; leave out an error beside the files of another run."""
+    def append(self, record: PhotographRecord, *, files: Sequence[Path] = ()) -> None:
+        """Append a record, and see that it is on the disk; not an error if another run has recorded its `files`."""
         text = json.dumps(asdict(record), ensure_ascii=False) + "\n"
         with self.locked() as file:
-            earlier = self.read().get(record.place) if record.error and not record.stem else None
+            earlier = self.read().get(record.place) if record.error and files else None
             if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
                 return
             self._drop_cut_line(file)

@@ -60,10 +60,10 @@ def run_batch(
     with output_folder(batch.out):
         known = [] if batch.plates.overwrite else [_known(task, records.get(task.place)) for task in tasks]
         ended = {record.place: record for record in known if record}
-        todo = [task for task in tasks if task.place not in ended]
+        todo = {task.place: task for task in tasks if task.place not in ended}
         show_progress(progress, len(ended), len(tasks))
-        for record in _ended(todo, workers or cores(), scheduler):
-            batch.records.append(record)
+        for record in _ended([*todo.values()], workers or cores(), scheduler):
+            batch.records.append(record, files=todo[record.place].existing)
             ended[record.place] = record
             show_progress(progress, len(ended), len(tasks))
     return batch.finished([ended[task.place] for task in tasks])
@@ -93,7 +93,7 @@ def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
                 problem, task = future.exception(), futures[future]
                 if isinstance(problem, BrokenExecutor):
                     raise problem
-                yield task.failure(problem) if problem else replace(future.result(), photograph=str(task.photo))
+                yield task.failure(problem) if problem else replace(future.result(), photograph=task.name)
         except (BrokenExecutor, CancelledError) as problem:  # the latter of a cluster whose scheduler has gone
             raise PlateError("process_died") from problem
 

@@ -49,6 +49,16 @@ def test_errors_keep_their_class_code_and_facts_and_name_the_final_file(tmp_path
     assert inner.facts == {"path": tmp_path / "b.txt"}
 
 
+def test_a_disk_that_takes_no_more_names_keeps_no_temporary_folder(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "open", refuse)
+    with pytest.raises(OSError, match="space"):
+        write(tmp_path, ["a.txt"])
+    assert not [*tmp_path.iterdir()]
+
+
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX permissions")
 def test_nobody_else_may_enter_the_temporary_folder(tmp_path):
     with staged_files(tmp_path) as staged:

@@ -186,12 +186,12 @@ def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
 
 def test_an_error_does_not_hide_the_record_of_another_runs_files(tmp_path):
     file, names = RecordFile(tmp_path / ESTIMATES), {"photograph": "a.jpg", "place": "a.jpg"}
-    (tmp_path / "a.spi1d").touch()
+    (lut := tmp_path / "a.spi1d").touch()
     file.append(PhotographRecord(**names, lut="a.spi1d", exposure=-1, weights=(-0.5, 1)))
-    file.append(PhotographRecord(**names, error="exists"))
+    file.append(PhotographRecord(**names, error="exists"), files=[lut])
     assert file.read()["a.jpg"].weights == (-0.5, 1)
-    (tmp_path / "a.spi1d").unlink()
-    file.append(PhotographRecord(**names, error="exists"))
+    lut.unlink()
+    file.append(PhotographRecord(**names, error="exists"), files=[lut])
     assert file.read()["a.jpg"].error == "exists"
 
 
@@ -218,7 +218,7 @@ def test_a_killed_run_leaves_no_process_and_is_continued(photographs, fixed_mode
     code = (
         "import sys, time, crfnet.cli.main, crfnet.pipeline.records as r;"
         "append = r.RecordFile.append;"
-        "r.RecordFile.append = lambda self, record: (append(self, record), print('ready', flush=True), time.sleep(60));"
+        "r.RecordFile.append = lambda *facts, **_: (append(*facts), print('ready', flush=True), time.sleep(60));"
         "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]
