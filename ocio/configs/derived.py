@@ -8,11 +8,13 @@ next to the new config. Nothing of the base is changed, nothing is deleted.
 import copy
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import PyOpenColorIO as OCIO
+
+from crfnet_core.locks import locked_folder
 
 from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
@@ -23,7 +25,7 @@ from ..output_files import all_or_none, check_targets, distinct_names, folded
 from .file_rules import LINEAR_SUFFIX, is_counter_name
 from .files import write_config
 from .looks import Look
-from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, plates_in_config
+from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, lost_plates, plates_in_config
 from .sources import ConfigSource
 
 
@@ -32,13 +34,15 @@ class DerivedConfig:
     """A config that was written with plates added: its path, all files written, and the plates.
 
     `without_rule` holds the file names, or patterns, to which rules give no space of their own: many cameras give such
-    a name, or several plates have it, or the base has no space for it.
+    a name, or several plates have it, or the base has no space for it. `dropped` holds the plates of an
+    earlier config of this path that are not in it.
     """
 
     path: Path
     files: tuple[Path, ...]
     plates: tuple[PlateInConfig, ...]
     without_rule: tuple[str, ...]
+    dropped: tuple[str, ...]
 
 
 def write_derived_config(
@@ -65,7 +69,8 @@ def write_derived_config(
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
     files = (target, *(folder / name for name in luts))
     check_targets(folder, files[1:], configs=[target], overwrite=overwrite)
-    with all_or_none(files, overwrite=overwrite) as staged:
+    plates = plates_in_config(config)
+    with ExitStack() as until_named, all_or_none(files, overwrite=overwrite) as staged:
         for name, lut in luts.items():
             write_lut(staged / name, lut)
         try:
@@ -73,8 +78,10 @@ def write_derived_config(
         except ConfigError:
             _check_valid(base)
             raise
-    plates = tuple(plate for plate in plates_in_config(config) if plate.name in check)
-    return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *without))))
+        until_named.enter_context(locked_folder(folder))
+        dropped = lost_plates(target, [plate.name for plate in plates])
+    new = tuple(plate for plate in plates if plate.name in check)
+    return DerivedConfig(target, files, new, tuple(dict.fromkeys((*common, *without))), tuple(dropped))
 
 
 def _check_valid(base: ConfigSource) -> None:

@@ -1,7 +1,8 @@
 """The color space of a plate, as plain data (`PlateColorSpace`) and as a part of any OpenColorIO config."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
 from typing import Self
@@ -22,7 +23,7 @@ from .file_rules import (
     plate_pattern,
     plate_rules,
 )
-from .files import plate_exposure
+from .files import load_config, plate_exposure
 from .reference_space import linear_space_name, matrix_transform, rec709_to_reference, steps_to_reference
 
 #: The category of the spaces of files, by which hosts sort their menus.
@@ -164,6 +165,13 @@ def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
     """Return the plates of a config, in its order, those that are hidden from menus, too."""
     names = config.getColorSpaceNames(OCIO.SEARCH_REFERENCE_SPACE_SCENE, OCIO.COLORSPACE_ALL)
     return [_plate(config, space) for space in map(config.getColorSpace, names) if space.getFamily() == FAMILY]
+
+
+def lost_plates(path: Path, kept: Collection[str]) -> list[str]:
+    """Return the names of a config's plates that are not `kept`; none of a file that is absent or cannot be read."""
+    with suppress(ConfigError):
+        return [plate.name for plate in plates_in_config(load_config(path)) if plate.name not in kept]
+    return []
 
 
 def _plate(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:

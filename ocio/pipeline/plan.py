@@ -1,16 +1,15 @@
 """Plan the files of an estimate: which there are, and whether they may be written; and let them appear together."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.locks import locked_folder
 
-from ..configs.files import load_config
-from ..configs.plate_color_space import PlateColorSpace, plates_in_config
+from ..configs.plate_color_space import PlateColorSpace, lost_plates
 from ..configs.portable import portable_config
-from ..errors import ConfigError, PlateError
+from ..errors import PlateError
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles, all_or_none, check_targets, folded
 
@@ -69,6 +68,4 @@ def staged_plan(plan: OutputPlan, targets: Sequence[Path]) -> Iterator[tuple[Pat
     with ExitStack() as until_named, all_or_none(targets, overwrite=plan.plates.overwrite) as folder:
         yield folder, lost
         until_named.enter_context(locked_folder(folder.parent))
-        with suppress(ConfigError):  # of a config that cannot be read
-            plates = plates_in_config(load_config(plan.files.config)) if plan.space else []
-            lost += [plate.name for plate in plates if plate.name != plan.files.color_space]
+        lost += lost_plates(plan.files.config, [plan.files.color_space]) if plan.space else []

@@ -8,7 +8,7 @@ from ...configs.derived import write_derived_config
 from ...configs.looks import read_looks
 from ...configs.plate_color_space import PlateInConfig, plates_in_config
 from ...configs.sources import find_config
-from .printing import print_result
+from .printing import lost_lines, print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -23,8 +23,10 @@ def _add(arguments: argparse.Namespace) -> None:
     derived = write_derived_config(find_config(arguments.base), arguments.out, looks, overwrite=arguments.overwrite)
     plates = [asdict(plate) for plate in derived.plates]
     document = {"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)}
+    document |= {"dropped": list(derived.dropped)} if derived.dropped else {}
     reason = "many cameras give such names, several plates have it, or the config has no space for it"
     notes = [f"note: file rules give {pattern} no space of its own: {reason}" for pattern in derived.without_rule]
+    notes += lost_lines(derived.path, derived.dropped)
     lines = [f"Written: {derived.path}", *_plate_lines(derived.plates), *notes]
     print_result(document, lines, as_json=arguments.json)
 

@@ -55,6 +55,15 @@ def test_files_without_a_rule_are_named(crfnet, folder, tmp_path):
     assert [plate["name"] for plate in document["plates"]] == [NAME, f"{NAME} (night)", "CRF IMG_0042"]
 
 
+def test_plates_that_a_replaced_config_no_longer_has_are_named(crfnet, folder, tmp_path):
+    add = ("config", "add", "--base", STUDIO, "--out", tmp_path / "show", "--overwrite")
+    both = (folder, write_look(tmp_path / "other", ["other.jpg"]))
+    for looks in (both, both):
+        assert "was replaced" not in crfnet(*add, *looks).out
+    assert 'config.ocio was replaced and no longer has "CRF other"; ' in crfnet(*add, folder).out
+    assert json.loads(crfnet(*add, both[1], "--json").out)["dropped"] == [NAME]
+
+
 def test_the_merge_line_of_the_documents_works(folder, root, tmp_path):
     """docs/USAGE.md: with OpenColorIO's own tool, the plates of an estimate over a studio's config."""
     tool = Path(sys.executable).with_name("ociomergeconfigs")
