@@ -15,11 +15,8 @@ from typing import Any, NoReturn
 from crfnet_core.errors import CRFNetError
 from crfnet_core.staging import OPEN_SETS, staged_files
 
-#: Size in bytes of the largest JSON file that is read.
-MAX_JSON_SIZE = 16 * 2**20
-
-#: Bytes that file systems take for a file's name.
-LONGEST_NAME = 255
+MAX_JSON_SIZE = 16 * 2**20  # size in bytes of the largest JSON file that is read
+LONGEST_NAME = 255  # bytes that file systems take for a file's name
 
 
 def read_bytes(path: Path, *, most: int) -> bytes:

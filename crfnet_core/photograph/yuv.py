@@ -32,11 +32,8 @@ MATRICES = {
 #: MatrixCoefficients of RGB, and of a stream that does not say; AVColorRange of full range.
 _RGB, _UNSPECIFIED, _FULL_RANGE = 0, 2, 2
 
-#: Lines from which an untagged video is taken to have the matrix of BT.709, below it BT.601.
-HD_LINES = 720
-
-#: Rows converted at a time, which keeps the memory for intermediate values small.
-_ROWS = 64
+HD_LINES = 720  # lines from which an untagged video is taken to have the matrix of BT.709, below it BT.601
+_ROWS = 64  # rows converted at a time, which keeps the memory for intermediate values small
 
 #: Chroma subsampling, horizontal and vertical -> FFmpeg's name.
 _SUBSAMPLING = {(1, 1): "444", (2, 1): "422", (2, 2): "420", (4, 1): "411", (1, 2): "440"}

@@ -17,11 +17,8 @@ from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from crfnet_core.types import Float32Array, Float64Array
 
-#: The fraction of the posterior that the band holds at every irradiance.
-BAND = 0.9
-
-#: Responses of the bank that are weighed at a time: in double precision, these fit into a core's cache.
-ROWS = 64
+BAND = 0.9  # the fraction of the posterior that the band holds at every irradiance
+ROWS = 64  # responses of the bank that are weighed at a time: in double precision, these fit into a core's cache
 
 
 @dataclass(frozen=True, eq=False)

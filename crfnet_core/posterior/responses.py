@@ -18,11 +18,8 @@ from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
 BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
 
-#: Brightness is stored in this many steps.
-STORED_STEPS = 65535
-
-#: Irradiance at which logarithms are cut off: 2^-16, below the noise of any sensor.
-LEAST_IRRADIANCE = 2.0**-16
+STORED_STEPS = 65535  # brightness is stored in this many steps
+LEAST_IRRADIANCE = 2.0**-16  # irradiance at which logarithms are cut off: 2^-16, below the noise of any sensor
 
 #: Positions, of 1024 uniform brightnesses, between which the shape of a response matters: see `metrics.shape_error`.
 SHAPE_SAMPLES = slice(

@@ -22,8 +22,7 @@ SECOND_WEIGHTS = (-1.8, -0.6, 0.6, 2.0)
 
 CANDIDATE_COUNT = len(FIRST_WEIGHTS) * len(SECOND_WEIGHTS)
 
-#: Fraction of the identity mixed into every candidate, so that no inverse is too steep for 8 bits.
-IDENTITY_FRACTION = 0.02
+IDENTITY_FRACTION = 0.02  # of the identity, mixed into every candidate so that no inverse is too steep for 8 bits
 
 
 @dataclass(frozen=True)

@@ -14,14 +14,9 @@ import numpy as np
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Samples, Triples
 from crfnet_core.types import Float32Array, Float64Array
 
-#: Distances between the samples of an edge.
-EQUATION_STRIDES = (1, 2, 4, 8)
-
-#: Levels of brightness at which the curvature is asked for.
-EQUATION_LEVELS = 20
-
-#: Least height in codes of an edge that is compared between channels.
-LEAST_COMPARED_HEIGHT = 12
+EQUATION_STRIDES = (1, 2, 4, 8)  # distances between the samples of an edge
+EQUATION_LEVELS = 20  # levels of brightness at which the curvature is asked for
+LEAST_COMPARED_HEIGHT = 12  # least height in codes of an edge that is compared between channels
 
 #: Difference between the encoded ratios of two channels from which on b is not a mixture of a and c.
 MOST_RATIO_DIFFERENCE = 0.3

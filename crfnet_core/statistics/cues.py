@@ -78,8 +78,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
 
 _ENDS = dict(zip(SHAPES, accumulate(map(math.prod, SHAPES.values())), strict=True))
 
-#: Length of the vector.
-LENGTH = sum(map(math.prod, SHAPES.values()))
+LENGTH = sum(map(math.prod, SHAPES.values()))  # of the vector
 
 
 def window_statistics(window: Float32Array) -> Float32Array:

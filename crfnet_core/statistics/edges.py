@@ -6,14 +6,9 @@ from crfnet_core.statistics.gradients import STRIDES
 from crfnet_core.statistics.sampling import Samples, Triples, interpolation_weights
 from crfnet_core.types import Float64Array
 
-#: Levels that the two sides of edges are first counted on.
-EDGE_LEVELS = 64
-
-#: Cells along each side of the grid (lower side, upper side) that edges are gathered into.
-GRID = 16
-
-#: Least height of an edge in codes: below it rounding decides where the middle lies.
-LEAST_EDGE_HEIGHT = 6
+EDGE_LEVELS = 64  # levels that the two sides of edges are first counted on
+GRID = 16  # cells along each side of the grid (lower side, upper side) that edges are gathered into
+LEAST_EDGE_HEIGHT = 6  # least height of an edge in codes: below it rounding decides where the middle lies
 
 EDGES_SHAPE = (len(STRIDES), 2, GRID, GRID)
 

@@ -7,14 +7,9 @@ import numpy as np
 from crfnet_core.statistics.sampling import CODES, Samples, interpolation_weights
 from crfnet_core.types import Float32Array, Float64Array
 
-#: Levels of brightness that counts over codes are gathered into.
-LEVELS = 64
-
-#: Distances between neighbors, in samples.
-STRIDES = (1, 2, 4, 8, 16)
-
-#: Sums per channel, stride and level: |d|, log(1 + |d|), d == 0, d and 1, for differences d in codes.
-GRADIENT_SUMS = 5
+LEVELS = 64  # levels of brightness that counts over codes are gathered into
+STRIDES = (1, 2, 4, 8, 16)  # distances between neighbors, in samples
+GRADIENT_SUMS = 5  # sums per channel, stride and level: |d|, log(1 + |d|), d == 0, d and 1, for differences d in codes
 
 HISTOGRAM_SHAPE = (3, LEVELS)
 GRADIENTS_SHAPE = (len(STRIDES), 3, GRADIENT_SUMS, LEVELS)

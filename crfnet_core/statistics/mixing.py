@@ -16,30 +16,18 @@ from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_respons
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, ISOLATION, Mixtures, Samples, evenly_spread
 from crfnet_core.types import Float32Array, Int16Array
 
-#: Distances between the samples of a mixture, and between samples of half resolution.
-MIXING_STRIDES = (1, 2, 4)
-HALF_RESOLUTION_STRIDES = (1, 2)
+MIXING_STRIDES = (1, 2, 4)  # distances between the samples of a mixture
+HALF_RESOLUTION_STRIDES = (1, 2)  # the same at half resolution
+SUMMED_CLASSES = 1 + len(ISOLATION)  # classes of mixtures that are summed up: all of them, and the two isolated ones
+COMPARED_CLASSES = 2  # those that are compared between channels: all of them, and the first isolated one
+MIXING_SUMS = 3  # sums per class and candidate: see `mixing_sums`
+MOST_SUMMED = 350  # the most mixtures of one stride and one pair of channels in `mixing_sums`
+MOST_COMPARED = 500  # the same in `disagreement_sums`
 
-#: Classes of mixtures that are summed up: all of them, and the two isolated classes.
-SUMMED_CLASSES = 1 + len(ISOLATION)
-
-#: Classes of mixtures that are compared between channels: all of them, and the first isolated class.
-COMPARED_CLASSES = 2
-
-#: Sums per class and candidate: see `mixing_sums`.
-MIXING_SUMS = 3
-
-#: The most mixtures of one stride and one pair of channels: in `mixing_sums`, and in `disagreement_sums`.
-MOST_SUMMED, MOST_COMPARED = 350, 500
-
-#: Compare two channels at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above this number of codes.
+#: Two channels are compared at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above so many codes.
 LEAST_DIFFERENCE = 60
-
-#: And b must lie more than 1/5 of the edge's height from both a and c.
-INNER = 5
-
-#: Bands of the level of b in which the disagreement is kept apart: candidates fail at different levels.
-LEVEL_BANDS = 4
+INNER = 5  # and b must lie more than 1/5 of the edge's height from both a and c
+LEVEL_BANDS = 4  # bands of the level of b in which the disagreement is kept apart: candidates fail at different levels
 
 #: Standard deviation of the difference between two channels' mixing ratios that is expected even under the true
 #: response (noise, demosaicing), on top of 8-bit rounding.

@@ -10,14 +10,9 @@ import numpy as np
 
 from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
 
-#: Code values that samples are counted on.
-CODES = 256
-
-#: The pairs of channels that are compared with each other.
-CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))
-
-#: Least difference between the sides of a mixture in codes: below it rounding decides the mixing ratio.
-LEAST_HEIGHT = 12
+CODES = 256  # code values that samples are counted on
+CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))  # the pairs of channels that are compared with each other
+LEAST_HEIGHT = 12  # least difference between the sides of a mixture: below it rounding decides the mixing ratio
 
 #: An edge is isolated if the samples before a and behind c differ from them by at most 1/2 of its height (first class),
 #: or by at most 1/5 (second class): there a and c show the two surfaces themselves.

@@ -13,24 +13,18 @@ from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_respons
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, Samples, evenly_spread
 from crfnet_core.types import Float32Array, Uint8Array
 
-#: Ranges in codes of the difference between two samples: weak shading, and strong.
+#: Ranges in codes of the difference between two samples, weak shading and strong; and the strides and the ranges at
+#: which shading is looked for.
 LITTLE, MUCH = (4, 24), (24, 80)
-
-#: The strides, and the ranges of the difference, at which shading is looked for.
 SHADING = ((1, LITTLE), (2, LITTLE), (4, LITTLE), (8, LITTLE), (16, LITTLE), (2, MUCH), (8, MUCH), (16, MUCH))
 
-#: The first sample's channels have to differ by more codes than these: gray shows nothing of shading.
-LEAST_CHROMA = 24
-
-#: Samples at these codes and beyond are skipped: black level and clipping distort their ratios.
-DARKEST, BRIGHTEST = 8, 247
+LEAST_CHROMA = 24  # the first sample's channels differ by more codes: gray shows nothing of shading
+DARKEST, BRIGHTEST = 8, 247  # samples here and beyond are skipped: black level and clipping distort their ratios
+MOST_COMPARED = 500  # the most shaded pairs that are compared at each stride
 
 #: Standard deviation, as a fraction of the logarithmic ratio, of differences between channels that have other causes
 #: than shading.
 OTHER_CHANGE = 0.4
-
-#: The most shaded pairs that are compared at each stride.
-MOST_COMPARED = 500
 
 SHADING_SHAPE = (len(SHADING), CANDIDATE_COUNT)
 

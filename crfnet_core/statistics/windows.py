@@ -8,20 +8,11 @@ import numpy as np
 
 from crfnet_core.types import LARGEST, Float32Array, Pixels, Uint8Array
 
-#: Side of a window in samples.
-WINDOW_SIZE = 227
-
-#: Windows that are analyzed in a photograph.
-WINDOWS_PER_PHOTOGRAPH = 10
-
-#: Code values over all three channels that a good window holds, of 256 (CRF-net paper, Sec. 3.2).
-FULL_COVERAGE = 220
-
-#: Random positions that are tried before the best-covering windows so far are taken.
-POSITIONS_TRIED = 400
-
-#: The shorter side of a photograph holds at least this many windows.
-WINDOWS_ACROSS = 2
+WINDOW_SIZE = 227  # side of a window in samples
+WINDOWS_PER_PHOTOGRAPH = 10  # windows that are analyzed in a photograph
+FULL_COVERAGE = 220  # code values over all three channels that a good window holds, of 256 (CRF-net paper, Sec. 3.2)
+POSITIONS_TRIED = 400  # random positions that are tried before the best-covering windows so far are taken
+WINDOWS_ACROSS = 2  # the shorter side of a photograph holds at least this many windows
 
 #: Windows begin at even rows and columns: JPEG and video keep the color of 2 x 2 pixels together, and in training,
 #: where windows are compressed as pictures of their own, these pixels always begin at a window's first.

@@ -20,11 +20,8 @@ _SIZE_MARKER = b"\xff\x4f\xff\x51"
 #: Methods of a color box: a space by number, any ICC profile, which OpenImageIO leaves out, and CICP.
 _BY_NUMBER, _ANY_PROFILE, _BY_CICP = b"\1", b"\3", b"\5"
 
-#: The numbers of spaces that are read: sRGB, gray, sYCC; and of CMYK.
-_READ_SPACES, _CMYK = (16, 17, 18), 12
-
-#: Type of a channel by which the colors are multiplied.
-_PREMULTIPLIED = 2
+_READ_SPACES, _CMYK = (16, 17, 18), 12  # the numbers of spaces that are read: sRGB, gray, sYCC; and of CMYK
+_PREMULTIPLIED = 2  # type of a channel by which the colors are multiplied
 
 
 def with_jp2_boxes(header: Any, path: Path) -> Any:
