@@ -1,10 +1,10 @@
 """Run a trained network on the CPU: windows in, evidence out."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
 from crfnet_core.types import Float32Array, Progress, cores, is_number, show_progress
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,10 @@ class ResponseNetwork:
         with numbers that are not finite or of another shape than evidence.
         """
         if self.config.reads_statistics:
-            outputs = self._session.run(_statistics(windows, progress))
+            # one thread, as numpy's small steps wait for each other's interpreter lock (two take a quarter longer), and
+            # one window at a time, as that fits into a core's cache
+            rows = _counted(map(window_statistics, windows), len(windows), progress)
+            outputs = self._session.run(np.stack(rows))
         else:
             outputs = [np.concatenate(column) for column in zip(*self._run_each(windows, progress), strict=True)]
         evidences = _evidences(outputs[:3])
@@ -73,28 +78,20 @@ class ResponseNetwork:
 
     def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
         """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
-        rows = []
         pool = ThreadPoolExecutor(self._threads or cores())
         try:
-            for number, row in enumerate(pool.map(self._session.run, windows[:, None]), start=1):
-                rows.append(row)
-                show_progress(progress, number, len(windows))
+            return _counted(pool.map(self._session.run, windows[:, None]), len(windows), progress)
         finally:
             pool.shutdown(cancel_futures=True)
-        return rows
 
 
-def _statistics(windows: Float32Array, progress: Progress | None) -> Float32Array:
-    """Return the statistics of each window, shape (N, LENGTH).
-
-    One thread counts them, since numpy's small steps wait for each other's interpreter lock: two threads take a quarter
-    longer. One window at a time keeps the working set in a core's cache.
-    """
-    rows = []
-    for number, window in enumerate(windows, start=1):
-        rows.append(window_statistics(window))
-        show_progress(progress, number, len(windows))
-    return np.stack(rows)
+def _counted(results: Iterable[T], total: int, progress: Progress | None) -> list[T]:
+    """Return the results of `total` steps; `progress` is called after each of them."""
+    done = []
+    for number, result in enumerate(results, start=1):
+        done.append(result)
+        show_progress(progress, number, total)
+    return done
 
 
 def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:
