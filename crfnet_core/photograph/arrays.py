@@ -29,14 +29,20 @@ def pixels_from_array(
 ) -> tuple[Float32Array, int]:
     """Return new pixels in R, G, B, float32 (H, W, 3) in [0, 1], and the bits per sample; see `Photo.from_array`."""
     order = _stated_order(array, color_order, name)
-    values = _samples(_upright(array) if isinstance(array, Image.Image) else array, name)
+    if isinstance(array, Image.Image):
+        with suppress(*DAMAGE):  # of its EXIF
+            array = ImageOps.exif_transpose(array)
+    values = _samples(array, name)
     order = _checked_order(values, order, name)
     bits = _checked_bits(values, bit_depth, name)
     planes = np.atleast_3d(values)[..., [order.index(letter) for letter in ("RGB" if "R" in order else "LLL")]]
     if values.dtype.kind == "f":
         check_range(planes, name)
         return np.ascontiguousarray(planes, np.float32), bits
-    return np.ascontiguousarray(_encoded(planes, bits, name)), bits
+    largest, highest = 2**bits - 1, int(planes.max())
+    if highest > largest:
+        raise PhotoError("array_above_bit_depth", path=name, code=highest, bit_depth=bits, largest=largest)
+    return np.ascontiguousarray(np.divide(planes, np.float32(largest), dtype=np.float32)), bits
 
 
 def check_range(pixels: NDArray[np.floating], name: str) -> None:
@@ -69,13 +75,6 @@ def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> C
     if color_order not in (None, order):
         raise PhotoError("pillow_order_stated", path=name, mode=mode, order=color_order)
     return order
-
-
-def _upright(image: Image.Image) -> Image.Image:
-    """Return a Pillow image turned upright, as its EXIF asks, unless that is damaged."""
-    with suppress(*DAMAGE):
-        image = ImageOps.exif_transpose(image)
-    return image
 
 
 def _samples(array: Any, name: str) -> NDArray[Any]:
@@ -119,11 +118,3 @@ def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int
     if not is_number(bit_depth, int, least=LEAST_BITS, most=bits):
         raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
     return int(bit_depth)  # an np.uint8 cannot hold 2 ** 16
-
-
-def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:
-    """Return code / largest code, rounded to float32."""
-    largest, highest = 2**bits - 1, int(codes.max())
-    if highest > largest:
-        raise PhotoError("array_above_bit_depth", path=name, code=highest, bit_depth=bits, largest=largest)
-    return np.asarray(np.divide(codes, np.float32(largest), dtype=np.float32))

@@ -3,7 +3,6 @@
 import mmap
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -42,7 +41,7 @@ class JpegFile:
 def checked_jpeg(path: Path) -> JpegFile:
     """Refuse a JPEG that OpenImageIO would accept: a huge frame, which opening allocates, and a missing end."""
     warnings, scan, before, between = set(), 0, 2, 0
-    with _mapped(path) as content:
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for count, (marker, stray, scan, end) in enumerate(_segments(content)):
             if stray:
                 warnings.add(f"Corrupt JPEG data: {stray} extraneous bytes before marker 0x{marker:02x}")
@@ -67,19 +66,12 @@ def checked_jpeg(path: Path) -> JpegFile:
 
 def base_image(path: Path) -> bytes:
     """Return the first picture of an Ultra HDR JPEG, of which OpenImageIO makes linear half floats with the second."""
-    with _mapped(path) as content:
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         scan = max((begin for _, _, begin, _ in _segments(content)), default=0)
         base = content[: content.find(_END_OF_IMAGE, scan) + 2]
         if len(base) == len(content):
             raise PhotoError("scene_linear_file", path=path, kind="a JPEG file of half samples")
     return base
-
-
-@contextmanager
-def _mapped(path: Path) -> Iterator[mmap.mmap]:
-    """Yield the content of a file."""
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        yield content
 
 
 def _segments(content: mmap.mmap, end: int = 2, *, last: int = _START_OF_SCAN) -> Iterator[tuple[int, int, int, int]]:

@@ -72,8 +72,12 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
         return Photo.from_codes(read_codes(path), path)
     name = getattr(source, "name", None)
     path = Path(name) if isinstance(name, str) and name else Path("bytes")
-    is_binary = hasattr(source, "read") and not isinstance(source, io.TextIOBase)
-    content = _content(source, path) if is_binary else source
+    content: object = source
+    if hasattr(source, "read") and not isinstance(source, io.TextIOBase):
+        try:
+            content = source.read()
+        except (OSError, ValueError) as problem:  # closed files and texts are a ValueError
+            raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
     if not isinstance(content, bytes | bytearray | memoryview):
         raise PhotoError("photograph_source", kind=type(source).__name__)
     return Photo.from_codes(read_content(bytes(content), path), path)
@@ -253,14 +257,6 @@ def _is_straight(samples: NDArray[Any], white: int) -> bool:
     samples = samples[samples[..., -1] < (1 - ABOVE_ALPHA) * white]
     is_above = samples[..., :-1].max(axis=-1, initial=0) > samples[..., -1] + ABOVE_ALPHA * white
     return bool(not samples.size or np.count_nonzero(is_above) > LEAST_ABOVE * len(samples))
-
-
-def _content(source: Any, path: Path) -> Any:
-    """Return all that an open file holds."""
-    try:
-        return source.read()
-    except (OSError, ValueError) as problem:  # closed files and texts are a ValueError
-        raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
 
 
 def read_content(content: bytes, path: Path) -> CodeValues:

@@ -71,12 +71,6 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
     return ColorTags(PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], ""), source, encoding)
 
 
-def dpx_tags(name: object) -> ColorTags:
-    """Return the tags of DPX's transfer characteristic."""
-    transfer = DPX_TRANSFERS.get(str(name), "")
-    return ColorTags(transfer=transfer, transfer_source=f'dpx:Transfer "{name}"' if transfer else "")
-
-
 def profile_transfer(profile: str) -> str:
     """Return the encoding that an ICC profile's description names; empty if none."""
     text = profile.casefold().replace("_", " ")  # which would not end a word for `\b`

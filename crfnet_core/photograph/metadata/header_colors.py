@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, Primaries
-from crfnet_core.photograph.metadata.color_tags import NAMED, ColorTags, cicp_tags, dpx_tags
+from crfnet_core.photograph.metadata.color_tags import DPX_TRANSFERS, NAMED, ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.icc import DAMAGED, read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
@@ -37,8 +37,9 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     tags.append(_exif_tags(header, interop_index or header_attribute(header, INTEROP_INDEX)))
     if file_format == "OpenEXR":
         tags += [_interop_tags(header), _chromaticity_tags(header, "chromaticities")]
-    if file_format == "DPX":
-        tags.append(dpx_tags(header_attribute(header, "dpx:Transfer")))
+    name = str(header_attribute(header, "dpx:Transfer"))
+    if file_format == "DPX" and name in DPX_TRANSFERS:
+        tags.append(ColorTags(transfer=DPX_TRANSFERS[name], transfer_source=f'dpx:Transfer "{name}"'))
     tags.sort(key=lambda each: each.source == DAMAGED)
     color = next((each for each in tags if each.source), ColorTags())
     encoding = next((each for each in tags if each.transfer_source), ColorTags())

@@ -50,11 +50,8 @@ SAME_STOPS, HLG_POWERS = 0.04, (0.9, 1.3)
 #: codes has at most 1.25 times as many of them as the upper one: 1 of logarithms, 1.4 of powers.
 LOG_STOPS, LOG_STRAIGHT = 3.4, 1.25
 
-#: Largest range, in stops, of X and Z against Y along the ramp: gammas of 2.2, 2.2 and 2.4 make 0.5.
-MOST_COLORED = 0.35
-
-#: Color space of a profile -> Pillow's mode of its pictures.
-_MODES = {"RGB": "RGB", "GRAY": "L"}
+MOST_COLORED = 0.35  # largest range, in stops, of X and Z against Y along the ramp: gammas of 2.2, 2.2 and 2.4 make 0.5
+_MODES = {"RGB": "RGB", "GRAY": "L"}  # color space of a profile -> Pillow's mode of its pictures
 
 
 def read_icc(profile: bytes) -> ColorTags:
@@ -171,10 +168,12 @@ def _primaries(facts: Any) -> Primaries | None:
     for named in NAMED:
         if np.abs(colorants - adaptation(named.white, D50) @ named.to_xyz()).max() < SAME_COLORANTS:
             return named
-    try:
-        return _unnamed(np.asarray(np.linalg.solve(_to_pcs(facts), colorants), np.float64))
-    except np.linalg.LinAlgError:
-        return None
+    with suppress(np.linalg.LinAlgError):
+        matrix = np.linalg.solve(_to_pcs(facts), colorants)
+        if abs(np.linalg.det(matrix)) >= 1e-4 and (matrix.sum(axis=0) > 0).all():
+            red, green, blue, white = (chromaticity_of(xyz) for xyz in (*matrix.T, matrix.sum(axis=1)))
+            return Primaries("primaries of its own", red, green, blue, white) if white[1] > 0 else None
+    return None
 
 
 def _to_pcs(facts: Any) -> Float64Array:
@@ -185,11 +184,3 @@ def _to_pcs(facts: Any) -> Float64Array:
     if facts.version >= 4 or white is None or min(white[0]) <= 0.1:
         return np.eye(3)
     return adaptation(chromaticity_of(white[0]), D50)
-
-
-def _unnamed(matrix: Float64Array) -> Primaries | None:
-    """Return the primaries of a matrix from RGB to XYZ, shape (3, 3); None if they make no white."""
-    if abs(np.linalg.det(matrix)) < 1e-4 or (matrix.sum(axis=0) <= 0).any():
-        return None
-    red, green, blue, white = (chromaticity_of(xyz) for xyz in (*matrix.T, matrix.sum(axis=1)))
-    return Primaries("primaries of its own", red, green, blue, white) if white[1] > 0 else None

@@ -102,6 +102,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
     metadata = replace(metadata, exif_size=_size_taken(metadata, is_as_written=encoded_by is False and not editor))
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
+    is_raw = not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
     origin = FileOrigin(
         device=device,
         camera=camera_name(metadata.make, metadata.model),
@@ -113,7 +114,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
         encoding=FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN),
         words=(),
         renderer=metadata.renderer,
-        is_developed=_is_developed(metadata, editor),
+        is_developed=is_raw if editor and metadata.raw_file else is_developer(editor),
     )
     return replace(origin, words=tuple(_words(origin, metadata)))
 
@@ -133,13 +134,6 @@ def picture_shape(width: int, height: int) -> str:
         return "other"
     near = (name for name, (ratio, margin) in SHAPES.items() if abs(longer / shorter / ratio - 1) <= margin)
     return next(near, "other")
-
-
-def _is_developed(metadata: FileMetadata, editor: str) -> bool:
-    """Return whether a program developed the photograph from a raw file."""
-    if editor and metadata.raw_file:
-        return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
-    return is_developer(editor)
 
 
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
@@ -194,7 +188,12 @@ def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | Non
 
 def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
     """Yield the words for an origin, one part of a sentence each."""
-    yield _maker_words(origin)
+    if origin.renderer:
+        yield f"rendered by {origin.renderer}"
+    elif origin.camera:
+        yield f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
+    else:
+        yield "the file names no camera"
     yield from filter(None, (_program_words(origin), _scaling_words(origin, metadata)))
     if metadata.is_turned:
         yield "turned upright, as the file asks"
@@ -202,15 +201,6 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         yield "a frame of a movie"
     elif origin.encoding:
         yield f"{metadata.file_format} files hold {origin.encoding}"
-
-
-def _maker_words(origin: FileOrigin) -> str:
-    """Return the renderer or the camera in words."""
-    if origin.renderer:
-        return f"rendered by {origin.renderer}"
-    if not origin.camera:
-        return "the file names no camera"
-    return f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
 
 
 def _program_words(origin: FileOrigin) -> str:

@@ -107,7 +107,13 @@ def is_mostly_ends(levels: Levels) -> bool:
 def is_limited_range(levels: Levels) -> bool:
     """Return whether a picture has the histogram of limited range: Eq. L.2; of 104 real photographs none has."""
     samples, luma = map(_ends, (levels.histogram, levels.luma))
-    return _has_piles(samples) or _has_ends(samples, luma)
+    # hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one
+    is_reached = all(near >= LEAST_AT_END and beyond <= min(near, MOST_OUTSIDE) for beyond, near, _ in samples)
+    if is_reached and any(near > inside for _, near, inside in samples):
+        return True
+    # hardly any luma lies beyond 16 and 235: JPEG compression blurs piles, and least of all in luma
+    is_reached = all(near >= LEAST_LUMA and beyond <= MOST_RINGING * near for beyond, near, _ in luma)
+    return is_reached and samples[0][0] <= MOST_BELOW and samples[1][0] <= MOST_ABOVE
 
 
 def _unevenness(histogram: Float64Array, bins: int) -> float:
@@ -119,18 +125,6 @@ def _unevenness(histogram: Float64Array, bins: int) -> float:
     roots = np.minimum(roots, np.sort(roots)[-3])
     steps = np.abs(roots[1:-1] - (roots[:-2] + roots[2:]) / 2)
     return float(steps.sum() / roots.sum()) if roots.any() else math.inf
-
-
-def _has_ends(samples: list[list[float]], luma: list[list[float]]) -> bool:
-    """Return whether hardly any luma lies beyond 16 and 235: JPEG compression blurs piles, and least of all in luma."""
-    is_reached = all(near >= LEAST_LUMA and beyond <= MOST_RINGING * near for beyond, near, _ in luma)
-    return is_reached and samples[0][0] <= MOST_BELOW and samples[1][0] <= MOST_ABOVE
-
-
-def _has_piles(samples: list[list[float]]) -> bool:
-    """Return whether hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one."""
-    is_reached = all(near >= LEAST_AT_END and beyond <= min(near, MOST_OUTSIDE) for beyond, near, _ in samples)
-    return is_reached and any(near > inside for _, near, inside in samples)
 
 
 def _ends(histogram: Float64Array) -> list[list[float]]:

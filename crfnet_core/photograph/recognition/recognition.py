@@ -58,18 +58,24 @@ def recognize(
 
     `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
-    if levels.is_flat or is_noise:
-        code, advice = ("flat_frame", "flat_frame_advice") if levels.is_flat else ("noise_frame", "noise_frame_advice")
-        return _recognized(Kind.FLAT, Notice(code), advice)
+    if levels.is_flat:
+        return _recognized(Kind.FLAT, "flat_frame", "flat_frame_advice")
+    if is_noise:
+        return _recognized(Kind.FLAT, "noise_frame", "noise_frame_advice")
     if is_limited_range(levels):
-        return _recognized(Kind.LIMITED_RANGE, Notice("limited_range"), "limited_range_advice")
+        return _recognized(Kind.LIMITED_RANGE, "limited_range", "limited_range_advice")
     if has_few_levels(levels):
-        return _recognized(Kind.FEW_LEVELS, Notice("few_levels"), "few_levels_advice")
+        return _recognized(Kind.FEW_LEVELS, "few_levels", "few_levels_advice")
     if is_mostly_ends(levels) and not any(origin.names_device for origin in origins):
-        return _recognized(Kind.FEW_LEVELS, Notice("mostly_ends"), "few_levels_advice")
+        return _recognized(Kind.FEW_LEVELS, "mostly_ends", "few_levels_advice")
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
-    return next(filter(None, map(_by_origin, origins)), None)
+    for origin in origins:
+        if origin.renderer:
+            return _recognized(Kind.RENDERING, "rendering", "rendering_advice", renderer=origin.renderer)
+        if origin.is_sent_copy:
+            return _recognized(Kind.SENT_COPY, "sent_copy", "sent_copy_advice", quality=origin.jpeg_quality)
+    return None
 
 
 def refuse_tagged(photo: Photo) -> None:
@@ -88,18 +94,9 @@ def refuse_linear(color: ColorTags, path: Path) -> None:
         raise PhotoError("tagged_linear", path=path, source=color.transfer_source)
 
 
-def _recognized(kind: Kind, reason: Notice, advice: str) -> Recognition:
-    """Return the recognition of a kind, in the sentences of a notice and of the code of an advice."""
-    return Recognition(kind, str(reason), str(Notice(advice)))
-
-
-def _by_origin(origin: FileOrigin) -> Recognition | None:
-    """Return the recognition of a rendering or a sent copy by its metadata."""
-    if origin.renderer:
-        return _recognized(Kind.RENDERING, Notice("rendering", {"renderer": origin.renderer}), "rendering_advice")
-    if origin.is_sent_copy:
-        return _recognized(Kind.SENT_COPY, Notice("sent_copy", {"quality": origin.jpeg_quality}), "sent_copy_advice")
-    return None
+def _recognized(kind: Kind, reason: str, advice: str, **facts: object) -> Recognition:
+    """Return the recognition of a kind, in the sentences of the codes of a reason, with its facts, and an advice."""
+    return Recognition(kind, str(Notice(reason, facts)), str(Notice(advice)))
 
 
 def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
