@@ -100,8 +100,7 @@ SENTENCES: Mapping[str, str] = {
     "not_a_file": "{path}: is a pipe or a device; give a file",
     "not_an_image_file": "{path}: does not begin as a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX or BMP"
     " file; save the photograph as one of these, and give an open file at its beginning",
-    "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph that it came"
-    " from",
+    "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph it came from",
     "palette": "{path}: {kind} holds at most 256 colors, mostly mixed by dither, from which no response can be"
     " estimated; give the photograph that it was made from",
     "photograph_is_empty": "{path}: the file is empty; copy it again",
@@ -177,8 +176,7 @@ SENTENCES: Mapping[str, str] = {
     " with more range, or frames closer together",
     "dark_channel": "only {count} flat places are seen well in two frames, {least} are needed: in {channels} nearly"
     " everything is black or white; use white light and a scene of neutral colors",
-    "exposures_gap": "two neighboring exposures are {step} stops apart; check the times, or take frames one or two"
-    " stops apart",
+    "exposures_gap": "neighboring exposures are {step} stops apart; check the times, or take frames 1 or 2 stops apart",
     "exposures_span": "the exposures span {span} stops; a stack needs {least:g} or more, from nearly nothing white to"
     " nearly everything white",
     "few_cells": "{path}: only {count} flat places are neither clipped nor saturated, {least} are needed; take a scene"
