@@ -20,8 +20,7 @@ Int16Array = NDArray[np.int16]  # the same, where differences of them are taken
 BoolArray = NDArray[np.bool_]
 IndexArray = NDArray[np.intp]  # positions in an array
 
-#: The largest finite number.
-LARGEST = sys.float_info.max
+LARGEST = sys.float_info.max  # the largest finite number
 
 
 class Pixels(Protocol):
@@ -35,8 +34,7 @@ class Pixels(Protocol):
         """Return some of them, for an index of rows and columns."""
 
 
-#: Called with (done, total) after every step. If it raises, the work stops.
-Progress = Callable[[int, int], None]
+Progress = Callable[[int, int], None]  # called with (done, total) after every step; if it raises, the work stops
 
 
 def show_progress(progress: Progress | None, done: int, total: int) -> None:
@@ -56,10 +54,7 @@ def cores() -> int:
 
 
 class EqualByFields:
-    """Base of dataclasses with arrays: equal if every field is, arrays by their elements, and NaN to NaN.
-
-    Like the arrays in them, these cannot be hashed.
-    """
+    """Base of dataclasses with arrays, not hashed: equal if all fields are, arrays by elements, and NaN to NaN."""
 
     __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
 

@@ -62,10 +62,7 @@ FACTORS: dict[str, tuple[float, ...]] = {
 
 
 def metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
-    """Return the factors of the prior shares of the families, for photographs of one camera; {} without any.
-
-    It is the geometric mean of their `family_factors`, since one camera took them all.
-    """
+    """Return the factors of the prior for photographs of one camera, by their geometric mean; {} without any."""
     if not origins:
         return {}
     factors = [family_factors(origin) for origin in origins]

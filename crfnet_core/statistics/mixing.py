@@ -2,10 +2,7 @@
 
 Light adds. Three samples a, b, c in a row with b between a and c obey g(b) = (1 - alpha) g(a) + alpha g(c) (Eq. 2 of
 docs/METHOD.md). Under the true inverse response g the mixing ratio alpha is the same in every channel, and all mixing
-ratios are equally likely. Under a wrong one neither holds.
-
-Source: Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004, look for the response that
-makes light mix linearly; here the network reads how well each candidate does.
+ratios are equally likely. Under a wrong one neither holds. The network reads how well each candidate does.
 """
 
 from collections.abc import Iterable
@@ -51,10 +48,7 @@ def disagreement(samples: Samples) -> tuple[Float32Array, Float32Array]:
 
 
 def half_resolution_disagreement(samples: Samples) -> tuple[Float32Array, Float32Array]:
-    """Return `disagreement_sums` and their numbers of terms at half the resolution, at `HALF_RESOLUTION_STRIDES`.
-
-    JPEG and video keep color at half the resolution, so there the channels of single samples were never independent.
-    """
+    """Return `disagreement_sums` of `Samples.halved`, and their numbers of terms, at `HALF_RESOLUTION_STRIDES`."""
     return _stacked(disagreement_sums(samples.halved.mixtures(stride)) for stride in HALF_RESOLUTION_STRIDES)
 
 

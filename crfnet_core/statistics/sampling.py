@@ -104,10 +104,7 @@ class Samples:
         return Samples(((rows[:, :, :-1:2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8))
 
     def in_a_row(self, stride: int, count: int) -> Row:
-        """Return `count` samples in a row, `stride` apart, of all rows and then of all columns, each (3, M).
-
-        At large strides fewer lines are looked at.
-        """
+        """Return `count` samples in a row, `stride` apart, of rows and then of columns (fewer if far apart), (3, M)."""
         rows, columns = self._lines
         size, skip = rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
         places = [np.s_[start : start + size] for start in range(0, count * stride, stride)]
@@ -140,9 +137,6 @@ def evenly_spread(mask: BoolArray, most: int) -> IndexArray:
 
 @cache
 def interpolation_weights(codes: int, levels: int) -> Float32Array:
-    """Return the weight of each of `codes` values in each of `levels` uniform levels, (codes, levels): q of Eq. 8.
-
-    A value lies between two levels and is split between them by linear interpolation.
-    """
+    """Return the weights of `codes` values in `levels` uniform levels by interpolation, (codes, levels): q of Eq. 8."""
     position = np.linspace(0, levels - 1, codes)[:, None]
     return np.asarray(np.maximum(1 - np.abs(position - np.arange(levels)), 0), np.float32)
