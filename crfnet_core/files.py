@@ -10,7 +10,7 @@ import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.staging import OPEN_SETS, staged_files
@@ -41,10 +41,7 @@ def file_sha256(path: Path) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """Return the content of a JSON file of at most `MAX_JSON_SIZE` bytes; see `parse_json`.
-
-    Raise OSError as `read_bytes` does. Raise ValueError as `parse_json` does.
-    """
+    """Return the content of a JSON file of at most `MAX_JSON_SIZE` bytes; raise as `read_bytes` and `parse_json`."""
     return parse_json(read_bytes(path, most=MAX_JSON_SIZE))
 
 
@@ -54,7 +51,7 @@ def parse_json(text: bytes) -> Any:
     Raise ValueError if it is not JSON, holds NaN or an infinity, or is nested too deeply.
     """
     try:
-        return json.loads(text, parse_constant=_refused, parse_float=_finite)
+        return json.loads(text, parse_constant=_finite, parse_float=_finite)
     except RecursionError:
         raise ValueError("is nested too deeply") from None
 
@@ -124,11 +121,8 @@ def json_text(document: Mapping[str, Any], *, ensure_ascii: bool = False) -> str
     return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
 
 
-def _refused(constant: str) -> NoReturn:
-    """Refuse NaN and the infinities, which Python takes for numbers and JSON does not."""
-    raise ValueError(f"{constant} is not a number of JSON")
-
-
 def _finite(text: str) -> float:
-    """Return the number in a text, which must not be too large."""
-    return number if math.isfinite(number := float(text)) else _refused(text)
+    """Return the number in a text; refuse NaN and infinities, which Python takes for numbers and JSON does not."""
+    if not math.isfinite(number := float(text)):
+        raise ValueError(f"{text} is not a number of JSON")
+    return number

@@ -7,7 +7,7 @@ from typing import Any
 from crfnet_core.errors import PhotoError, check_kinds
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import Predictions, ResponseNetwork
-from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, file_origin, with_stated_device
+from crfnet_core.photograph.metadata import FileMetadata, FileOrigin, file_origin, with_stated_device
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Levels, refuse_tagged
 from crfnet_core.photograph.thumbnail import thumbnail
@@ -40,8 +40,7 @@ Photographs = Photo | CutPhotograph | Iterable[Photo | CutPhotograph]
 def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutPhotograph:
     """Return the windows of a photograph.
 
-    Raise PhotoError if it is not a `Photo` or smaller than a window, or its file names an encoding with a published
-    curve.
+    Raise PhotoError if it is not a `Photo`, is smaller than a window, or its file names a published encoding.
     """
     if not isinstance(photo, Photo):
         raise PhotoError("not_a_photo", kind=type(photo).__name__)
@@ -54,6 +53,9 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
         raise PhotoError("smaller_than_window", path=photo.path, width=width, height=height, least=WINDOW_SIZE)
     windows = select_windows(photo, count=options.windows, seed=options.seed, coverage=options.coverage)
     samples = cut_windows(photo, windows)
+    origin = None if photo.metadata is None else file_origin(photo.metadata)
+    if options.device is not None:
+        origin = with_stated_device(origin or file_origin(FileMetadata()), options.device)
     return CutPhotograph(
         name=photo.path.name,
         windows=windows,
@@ -61,7 +63,7 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
         thumbnail=thumbnail(photo),
         levels=Levels.from_pixels(photo),
         make=photo.metadata.make if photo.metadata else "",
-        origin=_origin(photo.metadata, options.device),
+        origin=origin,
         is_gray=photo.is_gray,
         clipped=float(((samples <= DARKEST) | (samples >= BRIGHTEST)).mean()),
     )
@@ -86,10 +88,3 @@ def predict_evidence(
         predictions.append(network.predict(photograph.samples, progress=counted_from(progress, done, total)))
         done += len(photograph.samples)
     return tuple(predictions)
-
-
-def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin | None:
-    """Return how a photograph was made, by its metadata and the user; None if neither says anything."""
-    if device is not None:
-        return with_stated_device(file_origin(metadata or FileMetadata()), device)
-    return None if metadata is None else file_origin(metadata)

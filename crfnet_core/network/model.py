@@ -18,8 +18,7 @@ from crfnet_core.types import typed_value
 MODELS = Path(__file__).parents[1] / "models"
 DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 
-#: Size in bytes of the largest model.onnx that is read.
-MAX_GRAPH_SIZE = 64 * 2**20
+MAX_GRAPH_SIZE = 64 * 2**20  # size in bytes of the largest model.onnx that is read
 
 #: Basis and side of the windows that every network is made for, the numbers of weights that its evidence may be about,
 #: and the inputs that it may read.
@@ -69,11 +68,6 @@ class ModelConfig:
     def write(self, path: Path) -> None:
         """Write a model.json that `read` returns again; an existing one is replaced."""
         atomic_write_text(path, json.dumps(asdict(self), indent=2) + "\n", overwrite=True, error=ModelError)
-
-    @property
-    def reads_statistics(self) -> bool:
-        """Whether the network reads the statistics of windows rather than their samples."""
-        return self.input_name == "statistics"
 
     @property
     def label(self) -> str:

@@ -10,8 +10,7 @@ os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 
 import onnxruntime
 
-#: Bytes of memory for the values of all networks that run in this process.
-MOST_MEMORY = 2 * 2**30
+MOST_MEMORY = 2 * 2**30  # bytes of memory for the values of all networks that run in this process
 
 _kind = onnxruntime.OrtAllocatorType.ORT_ARENA_ALLOCATOR
 onnxruntime.create_and_register_allocator(

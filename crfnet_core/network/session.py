@@ -23,8 +23,7 @@ _PROBLEMS: tuple[type[Exception], ...] = (
 #: Seconds after which a run ends at its next node, and bytes of the largest constant that is computed at load.
 RUN_SECONDS, MOST_CONSTANT = 30, 2**24
 
-#: Lines that onnxruntime writes to stderr are suppressed below this severity: fatal.
-_FATAL = 4
+_FATAL = 4  # the severity below which lines that onnxruntime writes to stderr are suppressed
 
 
 class Session:
@@ -81,7 +80,7 @@ def _options(config: ModelConfig) -> Any:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     options.log_severity_level = _FATAL
-    if config.reads_statistics:  # to optimize two thousand small operators takes longer than it saves
+    if config.input_name == "statistics":  # to optimize two thousand small operators takes longer than it saves
         options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     options.add_session_config_entry("session.load_model_format", "ONNX")  # not what its first bytes call it
     options.add_session_config_entry("session.use_env_allocators", "1")  # of bounded memory

@@ -33,11 +33,8 @@ SCALED_BELOW, WEB_SIDES = 1600, (1600, 1920, 2048)
 #: The longer and the shorter side of a camera's picture are multiples of these; since 2004 it has this many pixels.
 NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 
-#: From this quality on the tables of the IJG library are nearly all ones, as in many cameras.
-INDISTINCT_QUALITY = 98
-
-#: Messengers and web sites send copies of at most this quality; pages of photographers have 90 and more.
-SENT_QUALITY = 85
+INDISTINCT_QUALITY = 98  # from here on the tables of the IJG library are nearly all ones, as in many cameras
+SENT_QUALITY = 85  # the most of copies from messengers and web sites; pages of photographers have 90 and more
 
 
 class Encoding(StrEnum):
@@ -100,7 +97,9 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_adobes = metadata.has_adobe or (bool(metadata.raw_file) and encoded_by is not False)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
-    metadata = replace(metadata, exif_size=_size_taken(metadata, is_as_written=encoded_by is False and not editor))
+    size, most = metadata.exif_size, 1 if encoded_by is False and not editor else MOST_ENLARGED
+    if size and max(size) * most < max(metadata.width, metadata.height):  # a preview's size: no camera enlarges
+        metadata = replace(metadata, exif_size=None)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
     is_raw = not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
     origin = FileOrigin(
@@ -169,13 +168,6 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
         return True
     is_native = shorter * longer >= NATIVE_PIXELS and picture_shape(*size) != "other" and is_in_blocks
     return False if is_native else None
-
-
-def _size_taken(metadata: FileMetadata, *, is_as_written: bool) -> tuple[int, int] | None:
-    """Return the size of the picture in EXIF; None without one, and for a preview's: no camera enlarges."""
-    size, most = metadata.exif_size, 1 if is_as_written else MOST_ENLARGED
-    is_preview = size is not None and max(size) * most < max(metadata.width, metadata.height)
-    return None if is_preview else size
 
 
 def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | None:
