@@ -8,8 +8,7 @@ import numpy as np
 
 from crfnet_core.types import Float64Array, number_of
 
-#: CIE 1931 x and y.
-Chromaticity = tuple[float, float]
+Chromaticity = tuple[float, float]  # CIE 1931 x and y
 
 #: XYZ to the cone responses of the Bradford transform (Lam 1985; Annex E of ISO 15076-1:2010, the ICC's specification).
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])

@@ -7,8 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
-#: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
-_LOCKED_BYTE = 1 << 30
+_LOCKED_BYTE = 1 << 30  # Windows locks bytes, which nobody else can then read: this one lies far behind the end
 
 
 def lock(file: IO[Any], *, wait: bool = True) -> None:

@@ -18,8 +18,7 @@ from typing import IO, Any
 from crfnet_core.errors import CRFNetError
 from crfnet_core.locks import lock
 
-#: How the names of temporary folders begin, and of what is in them besides the set.
-_PREFIX = ".crfnet-"
+_PREFIX = ".crfnet-"  # how the names of temporary folders begin, and of what is in them besides the set
 
 #: In a temporary folder: the file that is locked; and, as soon as the set is on the disk, the folder for the files that
 #: it replaces, whose name ends with the number of files in the set.

@@ -22,8 +22,7 @@ from crfnet_core.posterior.factors import metadata_factors
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Progress
 
-#: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
-MOSTLY_CLIPPED = 0.5
+MOSTLY_CLIPPED = 0.5  # fraction of samples at the ends of the range above which a photograph counts as mostly clipped
 
 
 def estimate_response(

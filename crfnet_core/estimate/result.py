@@ -24,8 +24,7 @@ from crfnet_core.types import EqualByFields, Float64Array, is_number, number_of,
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 SCHEMA_VERSION = 1
 
-#: The largest uncertainty in a document: far more than any response has.
-MOST_FIGURE = 1000
+MOST_FIGURE = 1000  # the largest uncertainty in a document: far more than any response has
 
 
 @dataclass(frozen=True, eq=False)

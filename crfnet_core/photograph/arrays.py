@@ -14,8 +14,7 @@ from crfnet_core.types import Float32Array, is_number
 #: The channels of an array, in their order; "A" is alpha. OpenCV's order is BGR, nearly all others use RGB.
 ColorOrder = Literal["L", "LA", "RGB", "RGBA", "BGR", "BGRA"]
 
-#: Least bits per sample: fewer show no response.
-LEAST_BITS = 8
+LEAST_BITS = 8  # least bits per sample: fewer show no response
 
 #: Modes of Pillow's images whose arrays hold code values as they are, and the order of their channels.
 PILLOW_MODES: dict[str, ColorOrder] = {

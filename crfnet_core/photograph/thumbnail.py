@@ -6,8 +6,7 @@ import numpy as np
 
 from crfnet_core.types import Float64Array, Pixels
 
-#: Cells along each side.
-SIDE = 16
+SIDE = 16  # cells along each side
 
 #: Correlation of neighboring cells below which there is no scene: 92 real photographs have at least 0.53, renderings of
 #: 20 scenes 0.37, and noise, also blurred over a fortieth of the frame, at most 0.22.

@@ -26,8 +26,7 @@ class Family(StrEnum):
     UNEXPLAINED = "unexplained"
 
 
-#: The renderings of cameras themselves.
-IN_CAMERA = (Family.PHONE, Family.COMPACT, Family.CAMERA)
+IN_CAMERA = (Family.PHONE, Family.COMPACT, Family.CAMERA)  # the renderings of cameras themselves
 
 #: Families in which the answer is not to be trusted as a display-referred camera response. All others are "ordinary". A
 #: network states how likely these make a photograph, against an ordinary response, in this order.

@@ -6,8 +6,7 @@ from typing import Self
 from crfnet_core.posterior.families import is_unusual
 from crfnet_core.posterior.posterior import Posterior
 
-#: The largest expected shape error, in stops, of a usable answer.
-USABLE_STOPS = 0.3
+USABLE_STOPS = 0.3  # the largest expected shape error, in stops, of a usable answer
 
 
 class Verdict(StrEnum):

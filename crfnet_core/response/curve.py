@@ -13,28 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 from crfnet_core.errors import CRFNetError, CurveError
 from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray, is_number
 
-#: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
-SAMPLES = 1024
+SAMPLES = 1024  # samples of a response over irradiance in [0, 1], as in DoRF and EMoR
+LEAST_SLOPE = 1e-4  # fraction of the identity mixed into every response, which bounds the slope of the inverse
+MOST_BRIGHTNESS = 2.0  # super-whites reach 1.1, and larger numbers are codes that nobody divided
+NUMBERS = "fiub"  # kinds of NumPy's numbers: real ones, integers and truth values
+BLOCK = 32768  # values that are interpolated at a time, because they fit into a core's cache
+CELLS = 16384  # cells of equal width by which `_PiecewiseLinear` finds the segment of a value
 
 #: As many uniform numbers from 0 to 1, read-only: irradiances of a response, or brightnesses of an inverse response.
 UNIFORM = np.linspace(0, 1, SAMPLES)
 UNIFORM.flags.writeable = False
-
-#: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
-LEAST_SLOPE = 1e-4
-
-#: Largest brightness that counts as one; super-whites reach 1.1, and larger numbers are codes that nobody divided.
-MOST_BRIGHTNESS = 2.0
-
-#: Kinds of NumPy's numbers: real ones, integers and truth values.
-NUMBERS = "fiub"
-
-#: Values that are interpolated at a time, because they fit into a core's cache; arrays of more are interpolated by
-#: `_PiecewiseLinear._evaluated`.
-BLOCK = 32768
-
-#: Cells of equal width by which it finds the segment of a value.
-CELLS = 16384
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,7 @@ from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import SAMPLES, numbers_of
 from crfnet_core.types import Float64Array
 
-#: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
-COMPONENTS = 11
+COMPONENTS = 11  # components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1)
 
 #: The packaged basis; and how far from 0 and 1 the ends of responses may lie, as the rounded ones of DoRF do.
 BASIS_FILE = Path(__file__).parents[1] / "data" / "emor.npz"

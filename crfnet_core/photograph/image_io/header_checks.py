@@ -24,8 +24,7 @@ _UNSUPPORTED = (
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )
 
-#: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
-MAX_PIXELS = 250_000_000
+MAX_PIXELS = 250_000_000  # of the largest photograph that is read, in at most 5 GB of memory; cameras have 200 million
 
 #: PhotometricInterpretation of TIFF: white or black is zero, RGB, YCbCr; the two of camera raw; a palette; LogLuv.
 WHITE_IS_ZERO, READ_PHOTOMETRICS = 0, (0, 1, 2, 6)

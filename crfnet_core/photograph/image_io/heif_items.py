@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from crfnet_core.photograph.image_io.iso_boxes import boxes
 
-#: Most steps from an item to one that it is made of; phones need two.
-MOST_STEPS = 8
+MOST_STEPS = 8  # most steps from an item to one that it is made of; phones need two
 
 
 def has_named_items(meta: bytes) -> bool:

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-#: Bytes of the largest box that is read, and the most boxes before it.
-MOST_META, MOST_BOXES = 4 * 2**20, 1000
+MOST_META, MOST_BOXES = 4 * 2**20, 1000  # bytes of the largest box that is read, and the most boxes before it
 
 
 def find_box(path: Path, wanted: bytes) -> bytes:

@@ -14,8 +14,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io.header_checks import damaged, with_segments
 from crfnet_core.photograph.image_io.iso_boxes import boxes, find_box
 
-#: Start of the codestream and of its marker SIZ.
-_SIZE_MARKER = b"\xff\x4f\xff\x51"
+_SIZE_MARKER = b"\xff\x4f\xff\x51"  # start of the codestream and of its marker SIZ
 
 #: Methods of a color box: a space by number, any ICC profile, which OpenImageIO leaves out, and CICP.
 _BY_NUMBER, _ANY_PROFILE, _BY_CICP = b"\1", b"\3", b"\5"

@@ -15,11 +15,8 @@ from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 #: A marker with its length, behind bytes that belong to no segment, such as a scan's with its restart markers.
 _SEGMENT = re.compile(rb"\xff+([^\0\1\xd0-\xd7\xff])(..)", re.DOTALL)
 
-#: The most segments of a header, and bytes between them, which Pillow reads one by one.
-_MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20
-
-#: The most scans, each of which takes as long as the whole picture: the advice of libjpeg-turbo for untrusted files.
-_MOST_SCANS = 500
+_MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20  # of a header; and bytes between them, which Pillow reads one by one
+_MOST_SCANS = 500  # as libjpeg-turbo advises for untrusted files: each takes as long as the whole picture
 
 _START_OF_SCAN, _END_OF_IMAGE, _JPEG_LS = 0xDA, b"\xff\xd9", 0xF7
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}

@@ -34,8 +34,7 @@ _DAMAGE = (
     Image.DecompressionBombError,  # of WebP nevertheless
 )
 
-#: Most pixels that are decoded for the main picture: of its tiles, and of the picture that they make.
-MOST_DECODED = 4 * MAX_PIXELS
+MOST_DECODED = 4 * MAX_PIXELS  # pixels that are decoded for the main picture: of its tiles, and of what they make
 
 #: Marks of a gain map: Apple's auxiliary picture, and the item and brand of ISO 21496-1.
 _GAIN_MAPS = (b"urn:com:apple:photo:2020:aux:hdrgainmap", b"tmap")

@@ -35,8 +35,7 @@ from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
 from crfnet_core.photograph.metadata.tiff_tags import interop_index, tiff_directory
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
-#: Rows read at a time, and pages of a TIFF file that are searched for the largest.
-_ROWS, _MOST_PAGES = 256, 64
+_ROWS, _MOST_PAGES = 256, 64  # rows read at a time, and pages of a TIFF file that are searched for the largest
 
 #: Formats whose pixels alone show whether alpha is associated. DPX does not state it, and OpenImageIO drops the bit of
 #: JPEG XL, whose alpha is nearly always straight.

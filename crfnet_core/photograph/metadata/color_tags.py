@@ -28,8 +28,7 @@ PRIMARIES = {
 #: Primaries that are known by their chromaticities; of equal ones the first counts.
 NAMED = (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values())
 
-#: Code points without a meaning there: reserved and unspecified.
-UNSPECIFIED = (0, 2, 3)
+UNSPECIFIED = (0, 2, 3)  # code points without a meaning there: reserved and unspecified
 
 #: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
 TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 17: "SMPTE ST 428-1", 18: "HLG"}

@@ -7,8 +7,7 @@ from crfnet_core.errors import check_kinds, one_line
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
 
-#: A quantization table: 64 divisors, row by row.
-Table = tuple[int, ...]
+Table = tuple[int, ...]  # a quantization table: 64 divisors, row by row
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200

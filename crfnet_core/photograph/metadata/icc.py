@@ -158,7 +158,7 @@ def _is_linear(lightness: Float64Array) -> bool:
 
 
 def _primaries(facts: Any) -> Primaries | None:
-    """Return the primaries of the colorants; None if they are damaged."""
+    """Return the primaries of the colorants; None if they are damaged, or make no white."""
     columns = [facts.red_colorant, facts.green_colorant, facts.blue_colorant]
     if None in columns:
         return None

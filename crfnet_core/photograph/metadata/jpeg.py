@@ -69,5 +69,4 @@ def scaled_table(table: Table, quality: int) -> Table:
     return tuple(min(max((divisor * percent + 50) // 100, 1), 255) for divisor in table)
 
 
-#: Table of luma -> quality.
-_QUALITIES = {scaled_table(ANNEX_K_LUMA, quality): quality for quality in range(1, 101)}
+_QUALITIES = {scaled_table(ANNEX_K_LUMA, quality): quality for quality in range(1, 101)}  # table of luma -> quality

@@ -14,8 +14,7 @@ from crfnet_core.types import Float32Array, Float64Array, Pixels
 #: below black is dead pixels, and what lies above white is reflections.
 BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 
-#: Luma of red, green and blue, as JPEG and most video encoders compute it (ITU-R BT.601).
-LUMA = np.array([0.299, 0.587, 0.114], np.float32)
+LUMA = np.array([0.299, 0.587, 0.114], np.float32)  # of R, G, B, as in JPEG and most video (ITU-R BT.601)
 
 #: Bins of the histograms: the codes of 10 bits. Rows and columns are skipped until at most so many samples remain;
 #: nothing is averaged. Rows of samples counted at a time.
@@ -42,8 +41,7 @@ MOST_BELOW, MOST_ABOVE = 0.01, 0.02
 #: pictures of few levels: 104 real photographs have at most 0.13, and up to 0.26 after edits in 8 bits.
 SMOOTH_BINS, LEAST_RANGE, FEW_LEVELS = (32, 64), 0.4, 0.3
 
-#: The largest fraction of black and white samples in a photograph whose camera is not named; 104 have at most 0.29.
-MOST_AT_ENDS = 0.5
+MOST_AT_ENDS = 0.5  # of samples that are black or white, where no camera is named; 104 photographs have at most 0.29
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,7 @@ from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 from crfnet_core.response.log_curves import COLOR_SPACES
 
-#: Probability of log footage above which it counts as recognized.
-RECOGNIZED = 0.5
+RECOGNIZED = 0.5  # probability of log footage above which it counts as recognized
 
 #: Encoding by the name that tags give it -> color space of OpenColorIO's ACES studio config.
 TAGGED_SPACES = COLOR_SPACES | {"HLG": "Rec.2100-HLG - Display", "PQ": "Rec.2100-PQ - Display"}
