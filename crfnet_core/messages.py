@@ -9,7 +9,7 @@ from collections.abc import Mapping
 SENTENCES: Mapping[str, str] = {
     # library
     "bad_camera_name": "{name!r} cannot name a camera; it takes 1 to 60 letters, digits, spaces and signs of '.,+()-_,"
-    " a letter or a digit first",
+    " a letter or a digit first and no dot last, and no device of Windows, such as CON",
     "camera_exists": "{folder} has a camera {name!r} already",
     "camera_folder": "{folder}: cannot be used ({reason}); set {variable} to another folder",
     "camera_not_measured": "{path}: holds no measured response; measure the camera, or remove the file",
