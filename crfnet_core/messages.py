@@ -60,7 +60,7 @@ SENTENCES: Mapping[str, str] = {
     # response
     "curve_rows": "needed are finite numbers in rows of {length}, found shape {shape}",
     "not_numbers": "a response or a LUT needs numbers, found {kind}",
-    "brightness_codes": "found code values, up to {found:.9g}: divide them by the largest code, say 255",
+    "brightness_codes": "found values up to {found:.9g}, not brightness: divide codes by the largest one, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
     "curve_exponent": "a gamma must be a number above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",

@@ -12,6 +12,7 @@ import PyOpenColorIO as OCIO
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
+from ..defaults import MOST_STOPS
 from ..errors import ConfigError
 from ..output_files import OutputFiles
 from .file_rules import (
@@ -30,9 +31,6 @@ from .reference_space import linear_space_name, matrix_transform, rec709_to_refe
 
 #: The category of the spaces of files, by which hosts sort their menus.
 CATEGORIES = ["file-io"]
-
-#: The largest exposure up or down, in stops: powers of two that single precision holds.
-MOST_STOPS = 100
 
 
 @dataclass(frozen=True)
