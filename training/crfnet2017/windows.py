@@ -16,7 +16,8 @@ from torch import Tensor
 
 from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE
 from training.data.curves import read_dorf
-from training.data.scenes import Scene, area_averaged, dithered, read_scenes
+from training.data.scenes import Scene, area_averaged, dithered
+from training.data.splits import read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
 FLOAT16_MAX = 65504.0  # the largest float16

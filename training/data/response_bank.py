@@ -15,7 +15,7 @@ from training.data.curves import CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
 from training.data.real_photographs import measured_bodies
-from training.data.splits import held_out_curves
+from training.data.splits import SPLITS
 
 SEED = 2017
 
@@ -41,7 +41,7 @@ def make_bank(data: Path, *, without: str | None = None, without_held_out: bool 
     in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
     dorf = read_dorf(data)
     if without_held_out:
-        dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
+        dorf = np.delete(dorf, SPLITS["held_out_curves"], axis=0)
     film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)
     families = ResponseFamilies(in_camera.draw, film)
     rows: list[Float64Array] = []

@@ -14,8 +14,8 @@ from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import read_dorf
 from training.data.linear_files import read_raw
-from training.data.scenes import BAND, Scene, read_scene, split_scenes
-from training.data.splits import checked_splits
+from training.data.scenes import BAND, Scene, read_scene
+from training.data.splits import SPLITS, check_splits, split_scenes
 from training.evaluation.baselines import constant_curves
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
@@ -85,16 +85,15 @@ class TestSet:
 
 
 def dorf_test_set(data: Path) -> TestSet:
-    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `checked_splits`."""
-    held_out = checked_splits(data)["held_out_curves"]
-    curves = read_dorf(data)
+    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `check_splits`."""
+    check_splits(data)
     files = split_scenes(data / "linear", with_imported=False)["test"]
     scenes = tuple(
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
     )
     originals = tuple(SceneFile(path.stem, RAW, path) for path in sorted((data / "raw_pairs").glob("*.crw")))
-    return TestSet(scenes, curves, tuple(held_out), data, originals)
+    return TestSet(scenes, read_dorf(data), tuple(SPLITS["held_out_curves"]), data, originals)
 
 
 def bundled_test_set() -> TestSet:
