@@ -16,7 +16,6 @@ from training.data.curves import read_dorf
 from training.data.linear_files import read_raw
 from training.data.scenes import BAND, Scene, read_scene
 from training.data.splits import SPLITS, check_splits, split_scenes
-from training.evaluation.baselines import constant_curves
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
 #: Five of Blender's studio lights (CC0), as Blender 4.5 stores them; their panoramas and SHA-256 are in the README.md
@@ -65,11 +64,6 @@ class TestSet:
     def files(self) -> tuple[SceneFile, ...]:
         """Scenes and originals, as they are numbered."""
         return self.scenes + self.originals
-
-    @cached_property
-    def constants(self) -> dict[str, ResponseCurve]:
-        """The guesses that are the same for every photograph."""
-        return constant_curves(self.curves)
 
     @cached_property
     def exposures(self) -> Float64Array:

@@ -25,6 +25,7 @@ from training.evaluation.baselines import (
     ORACLE_DORF,
     ORACLE_HEADROOM,
     OTHER_BODIES,
+    constant_curves,
     mean_in_log_irradiance,
     nearest_of,
     oracle_curves,
@@ -70,7 +71,7 @@ def _measure_baselines(protocol: str, photographs: Sequence[RealPhotograph], tab
     for photograph in wanted:
         counts, true = code_counts(read_real_photo(photograph)), truths[photograph.measured]
         others = mean_of_other_bodies(photograph, photographs, truths)
-        curves = test_set.constants | {OTHER_BODIES: others, ORACLE_HEADROOM: with_best_headroom(others, true)}
+        curves = constant_curves() | {OTHER_BODIES: others, ORACLE_HEADROOM: with_best_headroom(others, true)}
         curves |= {ORACLE_DORF: nearest_of(test_set.curves, true)} | oracle_curves(true)
         figures = {name: curve_figures(true, curve, counts) for name, curve in curves.items()}
         table.add(_rows(protocol, photograph, true, "", figures))

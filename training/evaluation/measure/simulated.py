@@ -18,7 +18,7 @@ from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float32Array
 from training.data.scenes import Scene, area_averaged
-from training.evaluation.baselines import GAMMA, oracle_curves
+from training.evaluation.baselines import GAMMA, constant_curves, oracle_curves
 from training.evaluation.measure.figures import curve_figures, estimate_figures
 from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model, load_network
@@ -70,7 +70,7 @@ def measure_simulated(whole: Job, table: Table, workers: int) -> None:
     work = list(_parts(whole, table))
     if not work:
         return
-    _ = whole.test_set.exposures, whole.test_set.constants  # computed once, for all processes
+    _ = whole.test_set.exposures  # computed once, for all processes
     with tqdm(total=sum(len(job.photographs) for job in work), desc=whole.protocol, unit="photograph") as bar:
         for job, rows in zip(work, _run(work, workers), strict=True):
             table.add(rows)
@@ -144,7 +144,7 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
     """Return the guesses of the baselines of a job by name."""
     if not job.has_baselines:
         return {}
-    constants = job.test_set.constants
+    constants = constant_curves()
     return {GAMMA: constants[GAMMA]} if job.protocol == PAPER else constants | oracle_curves(true)
 
 
