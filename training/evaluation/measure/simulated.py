@@ -50,18 +50,15 @@ class Job:
 
     def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
         """Return a row of the table."""
-        scene = self.test_set.files[photograph.scene]
         return {
             "protocol": self.protocol,
             "photograph": photograph.label,
             "estimator": estimator,
             "model": model,
-            "scene": scene.name,
             "scene number": photograph.scene,
-            "kind": scene.kind,
+            "kind": self.test_set.files[photograph.scene].kind,
             "curve": photograph.curve,
             "exposure": photograph.condition.factor,
-            "condition": photograph.condition.name,
         } | figures
 
 
