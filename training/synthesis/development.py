@@ -138,8 +138,6 @@ def point_sampled(codes: Uint8Array, each: int, scatter: int, rng: np.random.Gen
     step = side // WINDOW_SIZE
     starts = [((i + i // step) % step, i % step) for i in range(each)]
     first = np.arange(WINDOW_SIZE) * step
-    if not scatter:
-        return np.concatenate([codes[:, y::step, x::step][:, :WINDOW_SIZE, :WINDOW_SIZE] for y, x in starts])
     parts = []
     for y, x in starts:
         rows, columns = rng.integers(scatter + 1, size=(2, count, WINDOW_SIZE, WINDOW_SIZE))
