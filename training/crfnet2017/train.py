@@ -79,7 +79,6 @@ class StageTask:
         return figure > max(others, default=-math.inf) if self.classifies else figure < min(others, default=math.inf)
 
     def _squares(self, outputs: Tensor, classes: Tensor) -> Tensor:
-        """Return the squared distances of the weights."""
         return (outputs - self.weights[classes]).square().sum(dim=1)
 
 
@@ -119,7 +118,6 @@ class Trainer:
         return loss.detach()
 
     def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:
-        """Return the network's outputs."""
         with torch.autocast(inputs.device.type, torch.bfloat16, enabled=self.config.recipe.mixed):
             outputs: Tensor = network(inputs)
         return outputs.float()

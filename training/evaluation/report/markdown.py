@@ -155,5 +155,4 @@ def _cell(name: str, figure: Any) -> str:
 
 
 def _number(figure: Any) -> str:
-    """Return a figure as text."""
     return f"{figure:.2f}" if isinstance(figure, float) else str(figure)
