@@ -15,11 +15,7 @@ from training.data.families import SHOULDER, with_headroom
 ORACLE_COMPONENTS = (3, 11)
 
 #: Names of the baselines that tables or plots pick out.
-GAMMA = "gamma 2.2"
-MEAN_CURVE = "mean curve"
-OTHER_BODIES = "mean of the other bodies"
-ORACLE_HEADROOM = "oracle: mean of the other bodies, best headroom"
-ORACLE_DORF = "oracle: nearest curve of DoRF"
+GAMMA, MEAN_CURVE, OTHER_BODIES = "gamma 2.2", "mean curve", "mean of the other bodies"
 
 #: Stops of headroom that the oracle adds at most, and the fraction of the shoulder that it uses up at most.
 MOST_ADDED, MOST_USED = 3.0, 0.95

@@ -93,7 +93,7 @@ def dorf_test_set(data: Path) -> TestSet:
 def bundled_test_set() -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
     scenes = tuple(SceneFile(path.stem, "panorama", path, True) for path in sorted(LIGHTS_FOLDER.glob("*.exr")))
-    return TestSet(scenes, np.stack(list(formula_curves().values())))
+    return TestSet(scenes, formula_curves())
 
 
 def read_light(path: Path) -> Scene:
@@ -103,16 +103,15 @@ def read_light(path: Path) -> Scene:
     return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)
 
 
-def formula_curves() -> dict[str, Float64Array]:
-    """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
+def formula_curves() -> Float64Array:
+    """Return responses, shape (13, 1024): powers, logarithms, standards, an S-curve, and steps along EMoR."""
     basis, encoded = EmorBasis.load(), srgb_encode(UNIFORM)
-    steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
-    samples = {f"gamma {power:g}": UNIFORM ** (1 / power) for power in (1.4, 1.8, 2.6)}
-    samples |= {f"log {a:g}": np.log1p(a * UNIFORM) for a in (8, 60)}
-    samples |= {"sRGB": encoded, "Rec.709": rec709_encode(UNIFORM), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
-    for name, weights in steps.items():
-        samples[f"EMoR {name}"] = basis.reconstruct(np.pad(np.array(weights, dtype=float), (0, 11 - len(weights))))
-    return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}
+    rows = [UNIFORM ** (1 / power) for power in (1.4, 1.8, 2.6)]
+    rows += [np.log1p(factor * UNIFORM) for factor in (8, 60)]
+    rows += [encoded, rec709_encode(UNIFORM), encoded**2 * (3 - 2 * encoded)]
+    for weights in ([], [-4], [4], [0, 2], [-2, -1.5]):
+        rows.append(basis.reconstruct(np.array(weights + [0.0] * (11 - len(weights)))))
+    return np.stack([ResponseCurve.from_samples(row).brightness for row in rows])
 
 
 def training_luminance(data: Path) -> Float32Array:

@@ -141,8 +141,7 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
     """Return the guesses of the baselines of a job by name."""
     if not job.has_baselines:
         return {}
-    constants = constant_curves()
-    return {GAMMA: constants[GAMMA]} if job.protocol == PAPER else constants | oracle_curves(true)
+    return {GAMMA: ResponseCurve.gamma(2.2)} if job.protocol == PAPER else constant_curves() | oracle_curves(true)
 
 
 @lru_cache(maxsize=1)
