@@ -53,9 +53,6 @@ SENTENCES: Mapping[str, str] = {
     "target_is_plate": "{path}: is one of the plates, which are never replaced; choose another name",
     "too_many_frames": "frames {frames!r}: more than {most} frames; give fewer",
     "transfer_differs": "{path}: its transfer function is {transfer}, but {other} in {first}; process each by itself",
-    "unknown_depth": "depth {depth!r} is unknown; choose half or float",
-    "unknown_output_space": "output space {space!r} is unknown; choose one of {spaces}",
-    "unknown_primaries": "primaries {primaries!r} are unknown; choose one of {choices}",
     # exr
     "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts

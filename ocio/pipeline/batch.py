@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
+from crfnet_core.estimate.options import CheckedFields
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes, escaped_name
 
@@ -31,7 +32,7 @@ NUMBER_BYTES = 8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Batch(ABC):
+class Batch(CheckedFields, ABC):
     """Many photographs: the folder for everything, and how they are estimated and linearized."""
 
     out: Path

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from crfnet_core.errors import check_kinds
 from crfnet_core.estimate.analysis import CutPhotograph, cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
@@ -122,6 +123,8 @@ def estimate_files(
         If the network, the prior or the camera cannot be loaded, a photograph cannot be read or is smaller than a
         window, or a file has a published curve.
     """
+    for source in sources:
+        check_kinds(sources=(source, PlateSource))
     camera = load_camera(options)  # first, so that a wrong name is refused at once
     prior, network = Prior.load(options.prior), load_network(options.model, options.threads)
     analyzed = list(_cut_photographs(sources, options.analysis))

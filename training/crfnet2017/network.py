@@ -52,7 +52,11 @@ class CRFNet(nn.Module):
             nn.AvgPool2d((1, 7), stride=1),
         )
         self.head = nn.Linear(MAP_CHANNELS * MAP_SIDE * MAP_SIDE, outputs)
-        self._initialize()
+        for module in self.body.modules():
+            if isinstance(module, nn.Conv2d):
+                nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
+        nn.init.zeros_(self.head.weight)  # the mean response, or equal scores
+        nn.init.zeros_(self.head.bias)
 
     def forward(self, windows: Tensor) -> Tensor:
         """Return (N, outputs) of windows of shape (N, 3, 227, 227) in [0, 1]."""
@@ -60,14 +64,6 @@ class CRFNet(nn.Module):
         with torch.autocast(maps.device.type, enabled=False):
             outputs: Tensor = self.head(maps.float().flatten(1))
         return outputs
-
-    def _initialize(self) -> None:
-        """Scale the convolutions for ReLU, and set the head to 0, which gives the mean response or equal scores."""
-        for module in self.modules():
-            if isinstance(module, nn.Conv2d):
-                nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
-        nn.init.zeros_(self.head.weight)
-        nn.init.zeros_(self.head.bias)
 
 
 def _normalized(channels: int, outputs: int, size: int, stride: int) -> tuple[nn.Module, nn.Module]:

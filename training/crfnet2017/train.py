@@ -79,7 +79,6 @@ class StageTask:
         return figure > max(others, default=-math.inf) if self.classifies else figure < min(others, default=math.inf)
 
     def _squares(self, outputs: Tensor, classes: Tensor) -> Tensor:
-        """Return the squared distances of the weights."""
         return (outputs - self.weights[classes]).square().sum(dim=1)
 
 
@@ -93,16 +92,17 @@ class Trainer:
     scenes: TrainingScenes
     validation: Windows
 
-    def run(self, folder: Path, steps: range) -> None:
+    def run(self, folder: Path) -> None:
         """Do the steps; validate, log and save. The windows of a step depend on the seed and the step only."""
         state, recipe, losses, saved = self.state, self.config.recipe, list[Tensor](), time.monotonic()
-        for step in tqdm(steps, desc=self.config.stage, unit="step", initial=steps.start, total=recipe.steps):
+        steps = range(state.done, recipe.steps)
+        for step in tqdm(steps, desc=self.config.stage, unit="step", initial=state.done, total=recipe.steps):
             seed = self.config.seed * 10**9 + step
             losses.append(self.step(draw_windows(self.scenes, recipe.batch, seed=seed, augment=recipe.augmented)))
             if state.done % VALIDATE_EVERY == 0 or state.done == recipe.steps:
                 self._validate(folder, float(torch.stack(losses).mean()))
                 losses.clear()
-            elif time.monotonic() - saved < CHECKPOINT_SECONDS and state.done != steps.stop:
+            elif time.monotonic() - saved < CHECKPOINT_SECONDS:
                 continue
             state.save(folder / "last.pt")
             saved = time.monotonic()
@@ -118,7 +118,6 @@ class Trainer:
         return loss.detach()
 
     def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:
-        """Return the network's outputs."""
         with torch.autocast(inputs.device.type, torch.bfloat16, enabled=self.config.recipe.mixed):
             outputs: Tensor = network(inputs)
         return outputs.float()
@@ -138,10 +137,8 @@ class Trainer:
             np.savetxt(temporary, rows, formats, delimiter=",", header=header, comments="")
 
 
-def train(
-    scenes: TrainingScenes, validation: Windows, run: Path, config: RunConfig, *, digest: str, stop: int | None = None
-) -> TrainingState:
-    """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
+def train(scenes: TrainingScenes, validation: Windows, run: Path, config: RunConfig, *, digest: str) -> TrainingState:
+    """Train until the last step, resuming what `run` holds, and return where the run stands.
 
     The device is the scenes'. The folder `run` gets run.json, log.csv, last.pt and best.pt. `digest` identifies the
     data. Raise SystemExit if `run` holds a run with another configuration or other data.
@@ -150,8 +147,7 @@ def train(
     record_run(run, recipe=asdict(config), seed=config.seed, data={"sha256": digest}, start=start)
     task = StageTask(config.stage, scenes.curves, squared=config.recipe.squared)
     state = _start(config, task, run / "last.pt")
-    trainer = Trainer(config, task, state, scenes, validation)
-    trainer.run(run, range(state.done, min(config.recipe.steps, stop or config.recipe.steps)))
+    Trainer(config, task, state, scenes, validation).run(run)
     return state
 
 
@@ -199,7 +195,7 @@ def main() -> None:
     recipe = RECIPES[options.recipe][options.stage]
     recipe = replace(recipe, steps=options.steps or recipe.steps, mixed=recipe.mixed and not options.float32)
     config = RunConfig(options.stage, recipe, options.seed, options.init)
-    splits = {name: split.to(torch.device(options.device)) for name, split in read_splits(options.data).items()}
+    splits = read_splits(options.data, options.device)
     validation, digest = validation_windows(splits["validation"]), training_digest(options.data)
     train(splits["train"], validation, options.run, config, digest=digest)
     print((options.run / "log.csv").read_text(), end="")

@@ -6,9 +6,8 @@ every window has a photograph of its own. `render` applies the response and roun
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 import torch
@@ -16,7 +15,8 @@ from torch import Tensor
 
 from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE
 from training.data.curves import read_dorf
-from training.data.scenes import Scene, area_averaged, dithered, read_scenes
+from training.data.scenes import Scene, area_averaged, dithered
+from training.data.splits import read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
 FLOAT16_MAX = 65504.0  # the largest float16
@@ -47,11 +47,6 @@ class TrainingScenes:
     curves: Tensor
     exposures: Tensor
 
-    def to(self, device: torch.device) -> Self:
-        """Return the scenes on a device."""
-        pixels = tuple(scene.to(device) for scene in self.pixels)
-        return replace(self, pixels=pixels, curves=self.curves.to(device), exposures=self.exposures.to(device))
-
 
 @dataclass(frozen=True)
 class Windows:
@@ -67,16 +62,17 @@ class Windows:
             yield (codes.float() / 255).contiguous(memory_format=torch.channels_last)
 
 
-def read_splits(data: Path) -> dict[str, TrainingScenes]:
+def read_splits(data: Path, device: str = "cpu") -> dict[str, TrainingScenes]:
     """Return the splits "train" and "validation" of the scenes in the folder `data`, with the responses of DoRF."""
     scenes = {split: read_scenes(data / "linear", split) for split in ("train", "validation")}
     curves, luminance = read_dorf(data), reference_luminance(scenes["train"])
-    exposures = torch.tensor([automatic_exposure(curve, luminance) for curve in curves], dtype=torch.float32)
-    responses = torch.from_numpy(curves).float()
-    return {
-        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), responses, exposures)
+    exposures = torch.tensor([automatic_exposure(curve, luminance) for curve in curves], dtype=torch.float32).to(device)
+    responses = torch.from_numpy(curves).float().to(device)
+    pixels = {
+        split: tuple(scene_pixels(scene, number).to(device) for number, scene in enumerate(members))
         for split, members in scenes.items()
     }
+    return {split: TrainingScenes(members, responses, exposures) for split, members in pixels.items()}
 
 
 def scene_pixels(scene: Scene, number: int) -> Tensor:

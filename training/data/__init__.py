@@ -1,8 +1,8 @@
 """The data: responses and scenes, where they come from, and how they are split.
 
-manifest          source, licence, split and SHA-256 of every file: `manifest.csv`
+manifest          compares a data folder with `manifest.csv`: source, licence, split and SHA-256 of every file
 splits            which scenes and curves are held out: `splits.json`
-scenes            scene-linear photographs, split by scene
+scenes            scene-linear photographs
 linear_files      reads camera raw, OpenEXR and Radiance HDR
 import_scenes     adds photographs of your own to the scenes
 curves            responses to draw from: DoRF, in-camera base curves, mixtures

@@ -1,6 +1,5 @@
 """Camera responses to train and measure on: DoRF, in-camera base curves, and mixtures of each."""
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array
+from training.data.scenes import table_rows
 
 #: The files of responses in a data folder: DoRF, the published EMoR basis, and in-camera tone curves.
 DORF_FILE, EMOR_FILE, BASE_CURVES_FILE = "dorf/201_CRF_data.mat", "dorf/emor.txt", "camera_curves/base_curves.csv"
@@ -31,9 +31,8 @@ def read_dorf(data: Path) -> Float64Array:
 def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:
     """Return camera name -> monotone tone curve, from scene-linear to display-linear values, both in [0, 1]."""
     nodes: dict[str, list[tuple[float, float]]] = {}
-    with path.open(newline="") as file:
-        for row in csv.DictReader(file):
-            nodes.setdefault(row["name"], []).append((float(row["scene_linear"]), float(row["display_linear"])))
+    for row in table_rows(path):
+        nodes.setdefault(row["name"], []).append((float(row["scene_linear"]), float(row["display_linear"])))
     return {name: PchipInterpolator(*np.array(points).T) for name, points in nodes.items()}
 
 
@@ -46,22 +45,6 @@ def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
 def curve_of_inverse(irradiance: Float64Array) -> ResponseCurve:
     """Return the response whose inverse has these irradiances, shape (1023,), at the uniform brightnesses above 0."""
     return ResponseCurve.from_samples(np.interp(UNIFORM, np.concatenate([[0.0], irradiance]), UNIFORM))
-
-
-def geometric_median(
-    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9
-) -> Float64Array:
-    """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
-
-    Rows far from all others pull it less than a mean. Source: 500 steps of Weiszfeld (1937) from the mean. Distances
-    are L2 over `compared`; `least_distance` keeps a row from becoming the median only because it is near.
-    """
-    median: Float64Array = rows.mean(axis=0)
-    for _ in range(500):
-        distances = np.linalg.norm((rows - median)[:, compared], axis=1)
-        nearness = 1 / np.maximum(distances, least_distance)
-        median = nearness @ rows / nearness.sum()
-    return median
 
 
 @dataclass(frozen=True)

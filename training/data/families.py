@@ -1,7 +1,6 @@
 """Draws of responses of every family, to train on and for the bank of the posterior."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,7 +8,10 @@ from crfnet_core.posterior import IN_CAMERA, Family
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
-from training.data.curves import CurveSource, curve_of_inverse
+from training.data.curves import DrawResponse, curve_of_inverse
+
+#: Returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera".
+DrawInCamera = Callable[[Family, int, np.random.Generator], Float64Array]
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -86,25 +88,22 @@ def _log_uniform(bounds: tuple[float, float], count: int, rng: np.random.Generat
     return np.exp(rng.uniform(low, high, (count, 1)))
 
 
-@dataclass(frozen=True)
-class ResponseFamilies:
-    """Draws responses of a family."""
+def draw_responses(
+    family: Family, count: int, rng: np.random.Generator, *, in_camera: DrawInCamera, film: DrawResponse
+) -> Float64Array:
+    """Return responses of a family other than "unexplained", shape (count, 1024).
 
-    #: Returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera".
-    in_camera: Callable[[Family, int, np.random.Generator], Float64Array]
-    film: CurveSource  # DoRF: film, video and scientific cameras
-
-    def draw(self, family: Family, count: int, rng: np.random.Generator) -> Float64Array:
-        """Return responses of a family other than "unexplained", shape (count, 1024)."""
-        if family is Family.FILM:
-            return np.stack([self.film.draw(rng) for _ in range(count)])
-        if family is Family.LINEAR:
-            return UNIFORM ** _log_uniform(LINEAR_POWERS, count, rng)
-        if family is Family.LOG:
-            return log_like(count, rng)
-        if family is Family.DEVELOPED:
-            return developed(self.in_camera(Family.CAMERA, count, rng))
-        if family is Family.EDITED:
-            drawn = [self.in_camera(IN_CAMERA[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
-            return edited(np.stack(drawn), rng)
-        return self.in_camera(family, count, rng)
+    `film` draws the responses of DoRF: film, video and scientific cameras.
+    """
+    if family is Family.FILM:
+        return np.stack([film(rng) for _ in range(count)])
+    if family is Family.LINEAR:
+        return UNIFORM ** _log_uniform(LINEAR_POWERS, count, rng)
+    if family is Family.LOG:
+        return log_like(count, rng)
+    if family is Family.DEVELOPED:
+        return developed(in_camera(Family.CAMERA, count, rng))
+    if family is Family.EDITED:
+        drawn = [in_camera(IN_CAMERA[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
+        return edited(np.stack(drawn), rng)
+    return in_camera(family, count, rng)

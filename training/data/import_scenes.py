@@ -17,7 +17,7 @@ from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.photograph.image_io import first_line
 from training.data.linear_files import linear_scene
-from training.data.scenes import IMPORTED, table_rows, table_text
+from training.data.scenes import table_rows, table_text
 
 #: Kind -> its name in the manifest.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
@@ -37,7 +37,7 @@ def import_scene(path: Path, folder: Path, *, kind: str = "photograph", licence:
         raise PhotoError(f"{path}: {target} is there already; rename the file, or take out the other and its row")
     pixels, notes = linear_scene(path, is_panorama=kind == "panorama")
     height, width, _ = pixels.shape
-    values = (target.name, KINDS[kind], str(width), str(height), f"{IMPORTED} {path.name}", licence, "; ".join(notes))
+    values = (target.name, KINDS[kind], str(width), str(height), f"imported: {path.name}", licence, "; ".join(notes))
     row = dict(zip(COLUMNS, values, strict=True))
     folder.mkdir(parents=True, exist_ok=True)
     write_scene(target, pixels)

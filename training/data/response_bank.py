@@ -12,10 +12,10 @@ from crfnet_core.posterior import BANK_FILE, Family, ResponseBank
 from crfnet_core.posterior.responses import STORED_STEPS
 from crfnet_core.types import Float64Array
 from training.data.curves import CurveSource, read_dorf
-from training.data.families import ResponseFamilies
+from training.data.families import draw_responses
 from training.data.in_camera import InCameraResponses
 from training.data.real_photographs import measured_bodies
-from training.data.splits import held_out_curves
+from training.data.splits import SPLITS
 
 SEED = 2017
 
@@ -41,13 +41,12 @@ def make_bank(data: Path, *, without: str | None = None, without_held_out: bool 
     in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
     dorf = read_dorf(data)
     if without_held_out:
-        dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
-    film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)
-    families = ResponseFamilies(in_camera.draw, film)
+        dorf = np.delete(dorf, SPLITS["held_out_curves"], axis=0)
+    film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0).draw
     rows: list[Float64Array] = []
     for number, (family, count) in enumerate(COUNTS.items()):
-        known = dorf if family is Family.FILM else dorf[:0]
-        rows += [known, families.draw(family, count - len(known), np.random.default_rng([SEED, number]))]
+        known, rng = dorf if family is Family.FILM else dorf[:0], np.random.default_rng([SEED, number])
+        rows += [known, draw_responses(family, count - len(known), rng, in_camera=in_camera.draw, film=film)]
     members = [family for family, count in COUNTS.items() for _ in range(count)]
     return ResponseBank(np.concatenate(rows).astype(np.float32), tuple(members))
 

@@ -1,4 +1,4 @@
-"""Scene-linear photographs to train and measure on, split by scene."""
+"""Scene-linear photographs to train and measure on, and the tables that come with the data."""
 
 import csv
 import io
@@ -11,17 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Float32Array
-
-#: Seed of the shuffle that splits the scenes. It never changes, so every scene keeps its split.
-SPLIT_SEED = 2017
-
-#: Number of scenes that are only measured on, and of those that recipes are chosen and uncertainties fitted on.
-TEST_SCENES, VALIDATION_SCENES = 20, 12
-
-#: The source of a scene that `training.data.import_scenes` added begins so in the manifest.csv of its folder.
-IMPORTED = "imported:"
 
 #: The first and the last row of a panorama that are used, as fractions of its height: near its poles it is stretched.
 BAND = (0.1, 0.9)
@@ -46,29 +36,6 @@ class Scene:
         return cls(name, pixels / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama)
 
 
-def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[tuple[str, bool]]]:
-    """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
-
-    A quarter of the perspective photographs is in the test split, none in the validation split; panoramas fill up both.
-    Scenes that `training.data.import_scenes` added, listed if `with_imported`, only train, so that they move no other.
-    """
-    listed: dict[bool, list[tuple[str, bool]]] = {False: [], True: []}
-    for row in table_rows(folder / "manifest.csv"):
-        listed[row.get("source", "").startswith(IMPORTED)].append((row["file"], row["kind"] == "panorama band"))
-    scenes, more = sorted(listed[False]), sorted(listed[True]) if with_imported else []
-    rng = np.random.default_rng(SPLIT_SEED)
-    panoramas = [scenes[i] for i in rng.permutation(len(scenes)) if scenes[i][1]]
-    photographs = [scene for scene in scenes if not scene[1]]
-    photographs = [photographs[i] for i in rng.permutation(len(photographs))]
-    held_out = len(photographs) // 4
-    first, second = TEST_SCENES - held_out, TEST_SCENES - held_out + VALIDATION_SCENES
-    return {
-        "test": photographs[:held_out] + panoramas[:first],
-        "validation": panoramas[first:second],
-        "train": photographs[held_out:] + panoramas[second:] + more,
-    }
-
-
 def table_rows(path: Path) -> list[dict[str, str]]:
     """Return the rows of a table that comes with the data."""
     with path.open(newline="", encoding="utf-8") as file:
@@ -82,14 +49,6 @@ def table_text(columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue()
-
-
-def read_scenes(folder: Path, split: str) -> list[Scene]:
-    """Return the scenes of a split, from the EXR files of `folder`; CRFNetError if it has none."""
-    scenes = split_scenes(folder)[split]
-    if not scenes:
-        raise CRFNetError(f"{folder}: too few scenes, none is left for the split {split}; add to the published ones")
-    return [read_scene(folder / name, is_panorama) for name, is_panorama in scenes]
 
 
 def read_scene(path: Path, is_panorama: bool) -> Scene:

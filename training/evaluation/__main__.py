@@ -23,8 +23,8 @@ from training.evaluation.test_sets import bundled_test_set, dorf_test_set
 QUICK_PROTOCOLS, COUNTS, QUICK_COUNTS = ("p0", "paper"), (4020, 200), (40, 5)
 
 
-def parser() -> argparse.ArgumentParser:
-    """Return the command's parser."""
+def parsed(arguments: list[str] | None = None) -> Evaluation:
+    """Return what a command line asks for; CRFNetError without data or --quick, or if a model or number is wrong."""
     command = argparse.ArgumentParser(
         prog="python -m training.evaluation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -35,15 +35,9 @@ def parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--protocol", nargs="+", choices=PROTOCOLS, help="all that the models allow by default")
     command.add_argument("--photographs", type=int, help="the most photographs of P0 and P2 (all, or 40 with --quick)")
-    command.add_argument("--stressed", type=int, help="photographs of the protocol paper (200, or 5 with --quick)")
     command.add_argument("--workers", type=int, default=2, help="processes")
     command.add_argument("--quick", action="store_true", help="bundled lights and formulas instead of the data")
-    return command
-
-
-def parsed(arguments: list[str] | None = None) -> Evaluation:
-    """Return what a command line asks for; CRFNetError without data or --quick, or if a model or number is wrong."""
-    options = parser().parse_args(arguments)
+    options = command.parse_args(arguments)
     if options.data is None and not options.quick:
         raise CRFNetError("there is nothing to measure on; give --data, or --quick for the bundled lights")
     if options.workers < 1:
@@ -58,7 +52,7 @@ def parsed(arguments: list[str] | None = None) -> Evaluation:
         models=models,
         protocols=options.protocol or (QUICK_PROTOCOLS if options.quick else possible),
         photographs=photographs if options.photographs is None else options.photographs,
-        stressed=stressed if options.stressed is None else options.stressed,
+        stressed=stressed,
         workers=options.workers,
     )
 

@@ -7,34 +7,23 @@ from scipy.optimize import minimize_scalar
 
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
-from training.data.curves import curve_of_inverse, geometric_median
+from training.data.curves import curve_of_inverse
 from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
-ORACLE_COMPONENTS = (1, 3, 11)
+ORACLE_COMPONENTS = (3, 11)
 
 #: Names of the baselines that tables or plots pick out.
-GAMMA = "gamma 2.2"
-MEAN_CURVE = "mean curve"
-OTHER_BODIES = "mean of the other bodies"
-ORACLE_HEADROOM = "oracle: mean of the other bodies, best headroom"
-ORACLE_DORF = "oracle: nearest curve of DoRF"
+GAMMA, MEAN_CURVE, OTHER_BODIES = "gamma 2.2", "mean curve", "mean of the other bodies"
 
 #: Stops of headroom that the oracle adds at most, and the fraction of the shoulder that it uses up at most.
 MOST_ADDED, MOST_USED = 3.0, 0.95
 
 
-def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
-    """Return the guesses that are the same for every photograph; one is the geometric median of `known`, (N, 1024)."""
-    samples = {
-        "sRGB": srgb_encode(UNIFORM),
-        "Rec.709": rec709_encode(UNIFORM),
-        MEAN_CURVE: EmorBasis.load().mean,
-        "geometric median curve": geometric_median(known),
-    }
-    return {GAMMA: ResponseCurve.gamma(2.2)} | {name: ResponseCurve.from_samples(row) for name, row in samples.items()}
+def constant_curves() -> dict[str, ResponseCurve]:
+    """Return the guesses that are the same for every photograph."""
+    return {GAMMA: ResponseCurve.gamma(2.2), MEAN_CURVE: ResponseCurve.from_samples(EmorBasis.load().mean)}
 
 
 def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
@@ -44,7 +33,7 @@ def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
     curves = {"oracle: best gamma": nearest_power(true)}
     for k in ORACLE_COMPONENTS:
         truncated = np.where(np.arange(len(weights)) < k, weights, 0)
-        curves[f"oracle: EMoR, {k} component{'s' * (k > 1)}"] = ResponseCurve.from_samples(basis.reconstruct(truncated))
+        curves[f"oracle: EMoR, {k} components"] = ResponseCurve.from_samples(basis.reconstruct(truncated))
     return curves
 
 

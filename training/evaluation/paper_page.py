@@ -134,7 +134,6 @@ def _interval(figure: Sequence[float], decimals: int = 2) -> str:
 
 
 def _stated(figures: paper.PaperFigures) -> str:
-    """Return figures of the paper."""
     return f"{figures.estimation} ({figures.linearization})"
 
 
@@ -181,7 +180,6 @@ def _examples(report: Report, table: Table, test_set: TestSet, model: Model) -> 
 
 
 def _figure() -> Figure:
-    """Return an empty figure."""
     mpl.rcParams["font.size"] = 8
     return Figure(figsize=SIZE, dpi=DPI, layout="constrained")
 

@@ -44,12 +44,7 @@ class Evaluation:
     stressed: int  # the most photographs in "paper" under each condition
     workers: int  # processes; 1 measures in this one
 
-    @property
-    def keys(self) -> dict[str, str]:
-        """Name of a model -> its key in the table."""
-        return self.asked([""])
-
-    def asked(self, ways: Iterable[str]) -> dict[str, str]:
+    def asked(self, ways: Iterable[str] = ("",)) -> dict[str, str]:
         """Return the name of each model, followed by each way of asking it -> the model's key in the table."""
         return {model.name + way: model.key for model in self.models for way in ways}
 
@@ -93,8 +88,8 @@ def _clean(protocol: str, evaluation: Evaluation, table: Table) -> Iterator[Repo
     photographs = clean_photographs(range(len(test_set.scenes)), curves, count=evaluation.photographs)
     measure_simulated(Job(protocol, photographs, test_set, evaluation.models, bank=bank), table, evaluation.workers)
     names = [photograph.label for photograph in photographs]
-    cases = Cases(table.rows(protocol, evaluation.keys | table.baselines(protocol), names))
-    return rows.clean_rows(protocol, cases, list(evaluation.keys))
+    cases = Cases(table.rows(protocol, evaluation.asked() | table.baselines(protocol), names))
+    return rows.clean_rows(protocol, cases, list(evaluation.asked()))
 
 
 def _paper(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
@@ -111,7 +106,7 @@ def _paper(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
     for condition in CONDITIONS:
         if names := [photograph.label for photograph in photographs if photograph.condition == condition]:
             ways = evaluation.asked(simulated.WAYS) if condition == CLEAN else {}
-            conditions[condition.name] = Cases(table.rows(PAPER, evaluation.keys | ways | {GAMMA: ""}, names))
+            conditions[condition.name] = Cases(table.rows(PAPER, evaluation.asked() | ways | {GAMMA: ""}, names))
     return rows.stress_rows(conditions)
 
 
@@ -132,7 +127,7 @@ def _real(evaluation: Evaluation, table: Table) -> Iterator[ReportRow]:
     for protocol, cases in alone.items():
         yield from rows.real_rows(protocol, cases, list(ways))
     yield from rows.body_rows(protocol, cases, list(ways))
-    yield from rows.pooled_rows(protocol + POOLED, together[0], list(evaluation.keys))
+    yield from rows.pooled_rows(protocol + POOLED, together[0], list(evaluation.asked()))
 
 
 def _pooled(protocol: str, photographs: Sequence[RealPhotograph], ways: dict[str, str], table: Table) -> Cases:

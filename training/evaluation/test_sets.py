@@ -14,9 +14,8 @@ from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import read_dorf
 from training.data.linear_files import read_raw
-from training.data.scenes import BAND, Scene, read_scene, split_scenes
-from training.data.splits import checked_splits
-from training.evaluation.baselines import constant_curves
+from training.data.scenes import BAND, Scene, read_scene
+from training.data.splits import SPLITS, check_splits, split_scenes
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
 #: Five of Blender's studio lights (CC0), as Blender 4.5 stores them; their panoramas and SHA-256 are in the README.md
@@ -67,11 +66,6 @@ class TestSet:
         return self.scenes + self.originals
 
     @cached_property
-    def constants(self) -> dict[str, ResponseCurve]:
-        """The guesses that are the same for every photograph."""
-        return constant_curves(self.curves)
-
-    @cached_property
     def exposures(self) -> Float64Array:
         """s_crf of every response, shape (N,): it belongs to the response and not to the photograph."""
         luminance = log_normal_luminance() if self.data is None else training_luminance(self.data)
@@ -85,22 +79,21 @@ class TestSet:
 
 
 def dorf_test_set(data: Path) -> TestSet:
-    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `checked_splits`."""
-    held_out = checked_splits(data)["held_out_curves"]
-    curves = read_dorf(data)
+    """Return the test scenes of the folder `data` and the responses of DoRF; CRFNetError as of `check_splits`."""
+    check_splits(data)
     files = split_scenes(data / "linear", with_imported=False)["test"]
     scenes = tuple(
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
     )
     originals = tuple(SceneFile(path.stem, RAW, path) for path in sorted((data / "raw_pairs").glob("*.crw")))
-    return TestSet(scenes, curves, tuple(held_out), data, originals)
+    return TestSet(scenes, read_dorf(data), tuple(SPLITS["held_out_curves"]), data, originals)
 
 
 def bundled_test_set() -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
     scenes = tuple(SceneFile(path.stem, "panorama", path, True) for path in sorted(LIGHTS_FOLDER.glob("*.exr")))
-    return TestSet(scenes, np.stack(list(formula_curves().values())))
+    return TestSet(scenes, formula_curves())
 
 
 def read_light(path: Path) -> Scene:
@@ -110,16 +103,15 @@ def read_light(path: Path) -> Scene:
     return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)
 
 
-def formula_curves() -> dict[str, Float64Array]:
-    """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
+def formula_curves() -> Float64Array:
+    """Return responses, shape (13, 1024): powers, logarithms, standards, an S-curve, and steps along EMoR."""
     basis, encoded = EmorBasis.load(), srgb_encode(UNIFORM)
-    steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
-    samples = {f"gamma {power:g}": UNIFORM ** (1 / power) for power in (1.4, 1.8, 2.6)}
-    samples |= {f"log {a:g}": np.log1p(a * UNIFORM) for a in (8, 60)}
-    samples |= {"sRGB": encoded, "Rec.709": rec709_encode(UNIFORM), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
-    for name, weights in steps.items():
-        samples[f"EMoR {name}"] = basis.reconstruct(np.pad(np.array(weights, dtype=float), (0, 11 - len(weights))))
-    return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}
+    rows = [UNIFORM ** (1 / power) for power in (1.4, 1.8, 2.6)]
+    rows += [np.log1p(factor * UNIFORM) for factor in (8, 60)]
+    rows += [encoded, rec709_encode(UNIFORM), encoded**2 * (3 - 2 * encoded)]
+    for weights in ([], [-4], [4], [0, 2], [-2, -1.5]):
+        rows.append(basis.reconstruct(np.array(weights + [0.0] * (11 - len(weights)))))
+    return np.stack([ResponseCurve.from_samples(row).brightness for row in rows])
 
 
 def training_luminance(data: Path) -> Float32Array:

@@ -12,7 +12,7 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.network import ModelConfig
 from crfnet_core.statistics import LENGTH
-from training.data.scenes import VALIDATION_SCENES
+from training.data.splits import SPLITS
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
 from training.evaluation.measure.figures import ERRORS
 from training.evaluation.report import paper
@@ -42,7 +42,7 @@ def introduction(folder: Path, config: ModelConfig) -> str:
         **asdict(config),
         size=(folder / "model.onnx").stat().st_size / 1e6,
         statistics=LENGTH,
-        scenes=VALIDATION_SCENES,
+        scenes=len(SPLITS["scenes"]["validation"]),
         curves=curves.format(count=held_out),
     )
 

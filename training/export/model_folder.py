@@ -5,7 +5,6 @@ the parity of onnxruntime with them; model.json, and the record of the run besid
 """
 
 import argparse
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from training.data.splits import SPLITS_FILE
+from training.data.splits import SPLITS
 from training.export.onnx_graph import OF_WINDOWS, OPSET, POOLED, POOLING, Signature, export_onnx, rounded
 from training.network.model import NetworkConfig, PhotographNet, ShippedNetwork
 from training.network.train import CHECKPOINT
@@ -56,7 +55,7 @@ def write_config(folder: Path, signature: Signature, record: Record) -> None:
         training_commit=training_commit(record),
         training={
             "scene_kinds": ["panorama", "photograph"],
-            "held_out_curves": json.loads(SPLITS_FILE.read_text())["held_out_curves"] if is_without_held_out else [],
+            "held_out_curves": SPLITS["held_out_curves"] if is_without_held_out else [],
         },
         accuracy={},
     )

@@ -40,7 +40,16 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
         torch.save({"network": weighted_mean(networks, parts)}, temporary)
     largest = records[parts.index(max(parts))]
-    averaged = [_part(*one) for one in zip(sources, records, parts, strict=True)]
+    averaged = [
+        {
+            "share": round(part, 6),
+            "checkpoint": start_record(source),
+            "commit": record["commit"],
+            "recipe": record["recipe"],
+            "data": {key: record["data"][key] for key in ("files", "sha256")},
+        }
+        for source, record, part in zip(sources, records, parts, strict=True)
+    ]
     write_json(out / RUN_FILE, largest | {"average": averaged})
     return out / CHECKPOINT
 
@@ -59,17 +68,6 @@ def _are_related(sources: Sequence[Path], records: Sequence[Record]) -> bool:
     sizes = {json.dumps(record["recipe"]["network"], sort_keys=True) for record in records}
     starts = {record["start"] for record in records} - {start_record(source) for source in sources}
     return len(sizes) == 1 and len(starts) == 1
-
-
-def _part(source: Path, record: Record, part: float) -> Record:
-    """Return the record of one of the runs."""
-    return {
-        "share": round(part, 6),
-        "checkpoint": start_record(source),
-        "commit": record["commit"],
-        "recipe": record["recipe"],
-        "data": {key: record["data"][key] for key in ("files", "sha256")},
-    }
 
 
 def main() -> None:

@@ -23,8 +23,7 @@ from crfnet_core.statistics import window_statistics
 from training.data.curves import BASE_CURVES_FILE, CurveSource, DrawResponse, read_base_curves, read_dorf
 from training.data.families import edited
 from training.data.manifest import training_digest
-from training.data.scenes import read_scenes
-from training.data.splits import held_out_curves
+from training.data.splits import SPLITS, read_scenes
 from training.provenance import record_making
 from training.synthesis.camera import reference_luminance
 from training.synthesis.photographs import PhotographSource
@@ -102,7 +101,7 @@ class Shards:
 def photograph_source(data: Path, split: str) -> PhotographSource:
     """Return the source of a split's photographs; the exposure always comes from the training scenes."""
     dorf = read_dorf(data)
-    is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
+    is_held_out = np.isin(np.arange(len(dorf)), SPLITS["held_out_curves"])
     bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
     in_camera = CurveSource(dorf, bases, camera_fraction=1).draw
     sets: dict[CurveSet, DrawResponse] = {

@@ -38,7 +38,6 @@ def start_record(source: Path | None) -> str:
 
 
 def _weights_file(source: Path) -> Path:
-    """Return the file that holds the weights."""
     return source / "model.onnx" if source.is_dir() else source
 
 

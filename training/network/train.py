@@ -51,7 +51,9 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     from the weights of `init`, a checkpoint or a model folder, as far as it has them. Raise SystemExit if `run` holds a
     run of another recipe or on other shards.
     """
-    photographs, held_out = _split(shards, config)
+    photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
+    if config.without_held_out:
+        photographs, held_out = (part.only(part.curve_sets != CurveSet.HELD_OUT) for part in (photographs, held_out))
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
     recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.weights)}
     record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start=start_record(init))
@@ -85,14 +87,6 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             losses.append(loss.of_each(evidence, weights, families))
             errors.append(loss.errors(loss.scores(evidence), weights)[families == ORDINARY])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
-
-
-def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
-    """Return the photographs to train on and those to validate on, as the recipe says."""
-    photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
-    if config.without_held_out:
-        photographs, held_out = (part.only(part.curve_sets != CurveSet.HELD_OUT) for part in (photographs, held_out))
-    return photographs, held_out
 
 
 def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> TrainingState:

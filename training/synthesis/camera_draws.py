@@ -97,7 +97,6 @@ def _finish(rng: np.random.Generator) -> Finish:
 
 
 def _sharpening(rng: np.random.Generator) -> Sharpening:
-    """Return an unsharp mask."""
     return Sharpening(
         amount=rng.uniform(0.2, 1.5),
         radius=rng.uniform(0.6, 2),

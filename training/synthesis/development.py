@@ -111,7 +111,9 @@ def develop(
 
 def looked_up(plane: Float32Array, curve: Float64Array) -> Float32Array:
     """Return the values of `curve`, shape (1024,), at a plane that is clipped to [0, 1], float32."""
-    return _table(curve).take(_entries(plane))
+    position = np.linspace(0, len(curve) - 1, ENTRIES)
+    table = np.interp(position, np.arange(len(curve)), curve).astype(np.float32)
+    return table.take(_entries(plane))
 
 
 def hue_kept(planes: Planes, curve: Float64Array) -> Planes:
@@ -138,8 +140,6 @@ def point_sampled(codes: Uint8Array, each: int, scatter: int, rng: np.random.Gen
     step = side // WINDOW_SIZE
     starts = [((i + i // step) % step, i % step) for i in range(each)]
     first = np.arange(WINDOW_SIZE) * step
-    if not scatter:
-        return np.concatenate([codes[:, y::step, x::step][:, :WINDOW_SIZE, :WINDOW_SIZE] for y, x in starts])
     parts = []
     for y, x in starts:
         rows, columns = rng.integers(scatter + 1, size=(2, count, WINDOW_SIZE, WINDOW_SIZE))
@@ -153,12 +153,6 @@ def is_gray(irradiance: Float32Array) -> bool:
     """Return whether the channels of frames are equal, judged by some of their samples."""
     some = irradiance[:, ::8, ::8]
     return bool((some[..., :1] == some).all())
-
-
-def _table(curve: Float64Array) -> Float32Array:
-    """Return the curve, linear between its samples, at `ENTRIES` uniform positions."""
-    position = np.linspace(0, len(curve) - 1, ENTRIES)
-    return np.interp(position, np.arange(len(curve)), curve).astype(np.float32)
 
 
 def _entries(plane: Float32Array) -> np.ndarray:

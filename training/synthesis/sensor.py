@@ -15,6 +15,9 @@ from training.data.scenes import LUMINANCE
 #: Planes of red, green and blue, each float32 (N, S, S).
 Planes = list[Float32Array]
 
+#: The sites of a mosaic: red, green in red's rows, green in blue's rows and blue; channel and place of each.
+SITES = ((0, np.s_[:, ::2, ::2]), (1, np.s_[:, ::2, 1::2]), (1, np.s_[:, 1::2, ::2]), (2, np.s_[:, 1::2, 1::2]))
+
 #: Samples of noise that are drawn once; a photograph takes a part of them, from a random one on. To draw them anew
 #: would take longer than everything else that the sensor does.
 NOISE_SAMPLES = 1 << 22
@@ -47,8 +50,10 @@ class Sensor:
         if self.demosaicing is None:
             planes = [self._read(plane, channel, rng) for channel, plane in enumerate(planes)]
         else:
-            read = [self._read(site, channel, rng) for site, channel in zip(*_sites(planes), strict=True)]
-            planes = demosaiced(_joined(read, planes[0].shape), self.demosaicing)
+            mosaic = np.empty_like(planes[0])
+            for channel, site in SITES:
+                mosaic[site] = self._read(planes[channel][site], channel, rng)
+            planes = demosaiced(mosaic, self.demosaicing)
         luminance = np.broadcast_to(LUMINANCE.astype(np.float64), (3, 3))
         matrix = (self.saturation * np.eye(3) + (1 - self.saturation) * luminance) @ np.linalg.inv(mixing)
         return [np.maximum(plane, 0, out=plane) for plane in mixed(planes, matrix)]
@@ -64,8 +69,6 @@ class Sensor:
 
 def mixed(planes: Planes, matrix: Float64Array) -> Planes:
     """Return planes with the colors matrix @ (red, green, blue); new ones."""
-    if np.allclose(matrix, np.eye(3)):
-        return [plane.copy() for plane in planes]
     rows = matrix.astype(np.float32)
     return [row[0] * planes[0] + row[1] * planes[1] + row[2] * planes[2] for row in rows]
 
@@ -89,8 +92,6 @@ def demosaiced(mosaic: Float32Array, method: Demosaicing) -> Planes:
 def noise(shape: tuple[int, ...], rng: np.random.Generator) -> Float32Array:
     """Return normal deviates of variance 1, float32, not to be changed: a random part of those drawn once."""
     drawn, size = _normal_deviates(), int(np.prod(shape))
-    if size > len(drawn):
-        return rng.standard_normal(shape, dtype=np.float32)
     start = int(rng.integers(len(drawn) - size + 1))
     return drawn[start : start + size].reshape(shape)
 
@@ -101,32 +102,19 @@ def _normal_deviates() -> Float32Array:
     return np.random.default_rng(0).standard_normal(NOISE_SAMPLES, dtype=np.float32)
 
 
-def _sites(planes: Planes) -> tuple[Planes, list[int]]:
-    """Return what a mosaic keeps of red, green in red's rows, green in blue's rows and blue, and their channels."""
-    red, green, blue = planes
-    return [red[:, ::2, ::2], green[:, ::2, 1::2], green[:, 1::2, ::2], blue[:, 1::2, 1::2]], [0, 1, 1, 2]
-
-
-def _joined(sites: Planes, shape: tuple[int, ...]) -> Float32Array:
-    """Return the mosaic, float32 `shape`, of what `_sites` returns."""
-    mosaic = np.empty(shape, np.float32)
-    mosaic[:, ::2, ::2], mosaic[:, ::2, 1::2], mosaic[:, 1::2, ::2], mosaic[:, 1::2, 1::2] = sites
-    return mosaic
-
-
 def _filled(mosaic: Float32Array, first: int) -> Float32Array:
     """Return a plane from its samples at rows and columns `first`, `first` + 2, ...: means of the nearest ones."""
-    rows = mosaic[:, first::2]
-    plane = np.empty_like(mosaic)
-    plane[:, first::2, first::2] = rows[:, :, first::2]
-    padded = np.pad(rows[:, :, first::2], ((0, 0), (1, 1), (1, 1)), mode="edge")
-    between_columns = (padded[:, :, :-1] + padded[:, :, 1:]) / 2
-    between_rows = (padded[:, :-1] + padded[:, 1:]) / 2
-    between_both = (between_columns[:, :-1] + between_columns[:, 1:]) / 2
-    other = 1 - first
-    # Sample k of the other rows or columns lies between samples k - first and k - first + 1 of these.
-    height, width = plane[:, other::2, other::2].shape[1:]
-    plane[:, first::2, other::2] = between_columns[:, 1:-1, 1 - first :][:, :, :width]
-    plane[:, other::2, first::2] = between_rows[:, 1 - first :, 1:-1][:, :height]
-    plane[:, other::2, other::2] = between_both[:, 1 - first :, 1 - first :][:, :height, :width]
-    return plane
+    height, width = mosaic.shape[1:]
+    columns = _interleaved(mosaic[:, first::2, first::2], first, width)
+    return _interleaved(columns.swapaxes(1, 2), first, height).swapaxes(1, 2)
+
+
+def _interleaved(samples: Float32Array, first: int, size: int) -> Float32Array:
+    """Return `size` columns: `samples` (N, H, W) at `first`, `first` + 2, ..., and the means of neighbors between."""
+    padded = np.pad(samples, ((0, 0), (0, 0), (1, 1)), mode="edge")
+    means = (padded[..., :-1] + padded[..., 1:]) / 2
+    columns = np.empty((*samples.shape[:2], size), np.float32)
+    columns[..., first::2] = samples
+    other = columns[..., 1 - first :: 2]
+    other[:] = means[..., 1 - first :][..., : other.shape[-1]]
+    return columns

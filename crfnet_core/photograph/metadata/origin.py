@@ -153,7 +153,7 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
     shorter, longer = size = tuple(sorted((metadata.width, metadata.height)))
     exif_size = tuple(sorted(metadata.exif_size or size))
-    if shorter <= 0:
+    if shorter <= 0 or metadata.is_unread:
         return None
     if exif_size != size:
         return _is_scaled_from(exif_size, size)
@@ -184,6 +184,8 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         yield f"rendered by {origin.renderer}"
     elif origin.camera:
         yield f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
+    elif metadata.is_unread:
+        yield "its EXIF is compressed and was not read"
     else:
         yield "the file names no camera"
     yield from filter(None, (_program_words(origin), _scaling_words(origin, metadata)))

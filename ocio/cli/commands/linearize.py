@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.posterior import Verdict
 
 from ... import pipeline
@@ -61,6 +62,7 @@ def _check_single(out: Path, sequence: PlateSource) -> None:
     """Refuse the pattern of a sequence as the name of a single file, unless the plate is named after one, too."""
     plate = sequence.paths[0]
     if not sequence.numbers and FramePattern.parse(out) and FramePattern.parse(plate) is None:
+        file_kind(plate)  # refuses what is empty or of no known format, for this reason
         raise CommandError("pattern_for_file", path=out, plate=plate)
 
 

@@ -92,8 +92,18 @@ def test_the_first_stage_learns(scenes):
     assert min(losses) < 0.8 * losses[0]
 
 
-def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run, tmp_path):
-    train(scenes, validation, tmp_path, REGRESSION, digest="data", stop=1)
+def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run, tmp_path, monkeypatch):
+    def interrupted(trainer, batch):
+        if trainer.state.done:
+            raise KeyboardInterrupt
+        return step(trainer, batch)
+
+    step = Trainer.step
+    monkeypatch.setattr(command, "CHECKPOINT_SECONDS", 0)
+    monkeypatch.setattr(Trainer, "step", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        train(scenes, validation, tmp_path, REGRESSION, digest="data")
+    monkeypatch.setattr(Trainer, "step", step)
     first, before = states(tmp_path)
     assert train(scenes, validation, tmp_path, REGRESSION, digest="data").done == 2
     averaged, moving = states(tmp_path)
@@ -105,7 +115,7 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run,
 
 
 def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(command, "read_splits", lambda data: {"train": scenes, "validation": scenes})
+    monkeypatch.setattr(command, "read_splits", lambda data, device: {"train": scenes, "validation": scenes})
     monkeypatch.setattr(command, "training_digest", lambda data: "data")
     monkeypatch.setattr(command, "VALIDATION_WINDOWS", 2)
     monkeypatch.setattr(command, "RECIPES", {"default": {"regress": replace(REGRESSION.recipe, augmented=True)}})

@@ -66,14 +66,6 @@ def test_the_windows_of_a_seed_are_the_same(scenes):
     assert not torch.equal(first, other)
 
 
-def test_augmented_light_stays_light(scenes):
-    light = torch.stack([scene[:, :227, :227] for scene in scenes.pixels])
-    found = augmented(light, light.flip(0), torch.Generator().manual_seed(0))
-    assert found.shape == light.shape
-    assert found.min() >= 0
-    assert (found - light.float()).abs().mean() > 0.01
-
-
 def test_augmentation_of_neutral_light_only_scales_its_channels():
     """Color matrices keep neutrals, and the gains are one for each channel."""
     light = torch.linspace(0.1, 1, 227).expand(1, 3, 227, 227)

@@ -3,7 +3,7 @@ import pytest
 
 from crfnet_core.response.curve import UNIFORM
 from crfnet_core.response.transfer_functions import srgb_encode
-from training.data.curves import CurveSource, camera_response, geometric_median, read_base_curves
+from training.data.curves import CurveSource, camera_response, read_base_curves
 
 
 @pytest.fixture
@@ -46,8 +46,3 @@ def test_plain_dorf_curves_are_left_as_measured(bases):
     only_plain = source(bases, camera_fraction=0.0, plain_fraction=1.0)
     measured = {round(0.5004887585532747**exponent, 4) for exponent in (0.4, 0.5, 0.6)}
     assert {round(float(only_plain.draw(rng)[512]), 4) for _ in range(30)} == measured
-
-
-def test_the_geometric_median_of_three_levels_is_the_middle_one():
-    rows = np.repeat([[0.0], [1.0], [5.0]], 1024, axis=1)
-    np.testing.assert_allclose(geometric_median(rows), 1.0, atol=0.05)

@@ -5,7 +5,7 @@ from crfnet_core.posterior import Family
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from training.data.curves import CurveSource
-from training.data.families import DEVELOPED_HEADROOM, SHOULDER, ResponseFamilies, developed, edited, with_headroom
+from training.data.families import DEVELOPED_HEADROOM, SHOULDER, developed, draw_responses, edited, with_headroom
 
 #: Powers that stand for the in-camera responses of a kind.
 POWERS = {Family.PHONE: 0.4, Family.COMPACT: 0.45, Family.CAMERA: 0.5}
@@ -13,13 +13,18 @@ POWERS = {Family.PHONE: 0.4, Family.COMPACT: 0.45, Family.CAMERA: 0.5}
 
 @pytest.mark.parametrize("family", [family for family in Family if family is not Family.UNEXPLAINED])
 def test_responses_of_every_family_rise_from_0_to_1(family):
-    film = CurveSource(UNIFORM ** np.array([[0.3], [0.7]]), (), camera_fraction=0)
-    families = ResponseFamilies(lambda family, count, rng: np.tile(UNIFORM ** POWERS[family], (count, 1)), film)
-    drawn = families.draw(family, 20, np.random.default_rng(0))
+    film = CurveSource(UNIFORM ** np.array([[0.3], [0.7]]), (), camera_fraction=0).draw
+
+    def in_camera(family, count, rng):
+        return np.tile(UNIFORM ** POWERS[family], (count, 1))
+
+    drawn, again = (
+        draw_responses(family, 20, np.random.default_rng(0), in_camera=in_camera, film=film) for _ in range(2)
+    )
     assert drawn.shape == (20, 1024)
     assert (np.diff(drawn, axis=1) >= -1e-12).all()
     np.testing.assert_allclose(drawn[:, [0, -1]], [[0, 1]] * 20, atol=1e-9)
-    np.testing.assert_array_equal(drawn, families.draw(family, 20, np.random.default_rng(0)))
+    np.testing.assert_array_equal(drawn, again)
 
 
 def test_most_edits_are_small_and_a_few_are_large():

@@ -6,7 +6,8 @@ from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import chart, manifest, ramp, write_dng, write_float
 from training.data.import_scenes import import_scene, main
 from training.data.linear_files import linear_scene
-from training.data.scenes import read_scene, split_scenes
+from training.data.scenes import read_scene
+from training.data.splits import split_scenes
 
 
 def test_training_reads_the_new_folder(tmp_path, out):

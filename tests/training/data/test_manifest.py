@@ -1,91 +1,54 @@
-import csv
-import json
+import hashlib
 
 import pytest
 
-from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
-from training.data.manifest import (
-    MANIFEST_FILE,
-    NO_LICENCE,
-    ManifestRow,
-    differences,
-    main,
-    manifest_rows,
-    read_manifest,
-)
-from training.data.splits import SPLITS_FILE
-
-
-def write_table(path, rows):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+from training.data import manifest
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE
+from training.data.manifest import MANIFEST_FILE, ManifestRow, main, read_manifest, training_digest
+from training.data.splits import SPLITS
 
 
 @pytest.fixture
-def data(tmp_path):
-    """A data folder: three curve files, forty scenes, a real photograph and one with a fold, both with responses."""
-    folder = tmp_path / "data"
-    scenes = [
-        {"file": f"pano{n:02d}.exr", "kind": "panorama band", "source": f"somewhere:{n}", "licence": "CC0"}
-        for n in range(40)
-    ]
-    write_table(folder / "linear" / "manifest.csv", scenes)
-    real = {"id": "one", "licence": "none stated in repository", "source_repo": "a/b", "source_input": "c.jpg"}
-    write_table(folder / "real" / "cases.csv", [real | {"input_file": "input/one.jpg"}])
-    body = {"id": "two", "licence": "MIT (LICENSE)", "source_repo": "a/d", "source_dir": "e", "fold": "3"}
-    body |= {"file": "photos/two.webp", "crop": "", "gt": "gt/two.csv"}
-    write_table(folder / "real_bodies" / "cases.csv", [body])
-    names = [DORF_FILE, BASE_CURVES_FILE, EMOR_FILE, *(f"linear/{scene['file']}" for scene in scenes)]
-    names += ["real/input/one.jpg", "real/gt/one.csv", "real_bodies/photos/two.webp", "real_bodies/gt/two.csv"]
-    for name in names:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(name)
-    return folder
+def data(tmp_path, monkeypatch):
+    """A data folder of two files of curves and two scenes, one of them imported, and its manifest."""
+    files = {DORF_FILE: "responses", BASE_CURVES_FILE: "responses", "linear/Tree.exr": "scene"}
+    for name in (*files, "linear/mine.exr"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(name)
+    table = "file,kind,source,licence\nTree.exr,photograph,where,CC0\nmine.exr,photograph,imported: mine.dng,CC0\n"
+    (tmp_path / "linear" / "manifest.csv").write_text(table)
+    rows = [row_of(name, kind) for name, kind in files.items()]
+    monkeypatch.setattr(manifest, "read_manifest", lambda: rows)
+    return tmp_path
 
 
-@pytest.fixture
-def written(data, tmp_path):
-    path = tmp_path / "manifest.csv"
-    assert main(["--data", str(data), "--manifest", str(path)]) == 0
-    return path
+def row_of(name, kind, source="where"):
+    return ManifestRow(name, kind, source, "CC0", "train", hashlib.sha256(name.encode()).hexdigest())
 
 
-def test_every_file_has_a_row_and_rows_are_sorted(data, written):
-    rows = read_manifest(written)
-    assert len(rows) == 3 + 3 + 40 + 2 + 2
-    assert rows == sorted(rows) == manifest_rows(data)
-    assert str(data) not in written.read_text()
-    by_file = {row.file: row for row in rows}
-    name, sha256 = "real/input/one.jpg", "60a5827806738f73207efeb1f332e69846ed6dd9455546dc23c9f0b8a7777778"
-    row = ManifestRow(name, "real photograph", "a/b:c.jpg", NO_LICENCE, "measured only", sha256)
-    assert by_file[name] == row
-    assert by_file["real_bodies/photos/two.webp"].split == "measured only, fold 3"
-    assert by_file["real_bodies/cases.csv"].split == "decides grade, fold and use"
-    assert by_file["real_bodies/photos/two.webp"].licence == "MIT (LICENSE)"
+def test_the_check_lists_what_is_absent_altered_and_unlisted(data, capsys):
+    (data / DORF_FILE).unlink()
+    (data / "linear" / "Tree.exr").write_text("another")
+    assert main(["--data", str(data)]) == 2
+    lines = [f"absent: {DORF_FILE}", "altered: linear/Tree.exr"]
+    lines += ["unlisted: linear/manifest.csv", "unlisted: linear/mine.exr"]
+    assert capsys.readouterr().out.splitlines() == lines
 
 
-def test_the_check_passes_on_the_data_that_was_listed(data, written, capsys):
-    assert main(["--data", str(data), "--manifest", str(written), "--check"]) == 0
+def test_the_check_passes_on_the_data_that_is_listed(data, capsys):
+    for name in ("mine.exr", "manifest.csv"):
+        (data / "linear" / name).unlink()
+    assert main(["--data", str(data)]) == 0
     assert capsys.readouterr().out.endswith("as manifest.csv says\n")
 
 
-def test_the_check_lists_what_is_absent_altered_and_unlisted(data, written, capsys):
-    (data / "linear" / "pano00.exr").unlink()
-    (data / "linear" / "pano01.exr").write_text("another")
-    (data / "real" / "input" / "new.jpg").write_text("new")
-    assert main(["--data", str(data), "--manifest", str(written), "--check"]) == 2
-    lines = ["absent: linear/pano00.exr", "altered: linear/pano01.exr", "unlisted: real/input/new.jpg"]
-    assert capsys.readouterr().out.splitlines()[-3:] == lines == differences(data, read_manifest(written))
-
-
-def test_an_absent_file_of_a_table_is_named(data, tmp_path, capsys):
-    (data / "linear" / "pano00.exr").unlink()
-    assert main(["--data", str(data), "--manifest", str(tmp_path / "new.csv")]) == 2
-    assert "pano00.exr: is absent" in capsys.readouterr().err
-    assert not (tmp_path / "new.csv").exists()
+def test_the_digest_of_a_training_is_of_the_curves_and_of_all_scenes_as_they_are(data):
+    rows = [row_of(BASE_CURVES_FILE, "responses"), row_of(DORF_FILE, "responses"), row_of("linear/Tree.exr", "scene")]
+    rows.append(row_of("linear/mine.exr", "scene", "imported: mine.dng"))
+    lines = ["file,kind,source,licence,split,sha256", *(",".join(vars(row).values()) for row in rows), ""]
+    assert training_digest(data) == hashlib.sha256("\n".join(lines).encode()).hexdigest()
+    (data / "linear" / "mine.exr").write_text("another")
+    assert training_digest(data) != hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
 def test_the_committed_manifest_splits_the_scenes_as_splits_json():
@@ -93,8 +56,7 @@ def test_the_committed_manifest_splits_the_scenes_as_splits_json():
     for row in read_manifest():
         if row.kind == "scene":
             listed[row.split].add(row.file.removeprefix("linear/"))
-    splits = json.loads(SPLITS_FILE.read_text())["scenes"]
-    assert listed == {split: set(scenes) for split, scenes in splits.items()}
+    assert listed == {split: set(scenes) for split, scenes in SPLITS["scenes"].items()}
 
 
 def test_the_scenes_of_the_paper_s_network_are_listed_with_source_licence_and_hash():

@@ -16,7 +16,7 @@ DORF = np.linspace(0.3, 0.9, 6)
 def small(monkeypatch):
     """A twentieth of the responses, of ten camera bodies."""
     monkeypatch.setattr(response_bank, "COUNTS", {family: count // 20 for family, count in COUNTS.items()})
-    monkeypatch.setattr(response_bank, "held_out_curves", lambda dorf: [0])
+    monkeypatch.setitem(response_bank.SPLITS, "held_out_curves", [0])
     monkeypatch.setattr(response_bank, "measured_bodies", lambda data, without: bodies(without))
 
 

@@ -16,16 +16,12 @@ from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, read_
 
 def test_baselines_against_gamma_2_2():
     true = ResponseCurve.gamma(2.2)
-    curves = constant_curves(bundled_test_set().curves) | oracle_curves(true)
+    curves = constant_curves() | oracle_curves(true)
     errors = {name: estimation_error(true, curve) for name, curve in curves.items()}
     expected = {
         "gamma 2.2": 0.0,
-        "sRGB": 0.1846,
-        "Rec.709": 1.1214,
         "mean curve": 1.1841,
-        "geometric median curve": 0.9662,
         "oracle: best gamma": 0.0,
-        "oracle: EMoR, 1 component": 1.1799,
         "oracle: EMoR, 3 components": 0.1736,
         "oracle: EMoR, 11 components": 0.0056,
     }

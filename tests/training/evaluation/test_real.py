@@ -12,7 +12,7 @@ from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
-from crfnet_core.response.metrics import estimation_error, shape_error
+from crfnet_core.response.metrics import estimation_error
 from training.data.real_photographs import real_photographs
 from training.data.response_bank import COUNTS
 from training.evaluation.measure.real import WAYS, cached_bank, mean_of_other_bodies, without_exif
@@ -129,15 +129,6 @@ def test_p4_means_are_over_bodies(measured_once):
     )
     mean = report.row("P4 real_bodies", "gamma 2.2")["E_est mean"][0]
     assert mean == pytest.approx(((three + four) / 2 + four) / 2, abs=1e-3)
-
-
-def test_p4_knows_the_mean_of_the_other_bodies(measured_once):
-    (one,) = photographs(measured_once[0], photograph="one", estimator="mean of the other bodies")
-    truth = ResponseCurve.gamma((POWERS["two"] + POWERS["three"]) / 2)  # by hand, from the other bodies of "one"
-    response = np.loadtxt(measured_once[0] / "data/real/gt/one.csv", delimiter=",", skiprows=1)[:, 1]
-    plate = ResponseCurve.from_samples(response)
-    expected = [metric(plate, truth) for metric in (estimation_error, shape_error)]
-    assert [one["E_est"], one["shape"]] == pytest.approx(expected, abs=5e-3)
 
 
 def test_p4_answers_by_the_evidence_of_the_model_and_the_bank_of_the_other_bodies(measured_once, model):

@@ -38,11 +38,6 @@ def test_the_interval_is_that_of_scenes_and_curves_together(rng):
     assert mean.low < mean.value < mean.high
 
 
-def test_every_body_counts_once():
-    resampling = Resampling.from_bodies(np.array(["a", "a", "a", "b"]))
-    assert resampling.mean(np.array([0.0, 0.0, 0.0, 1.0])).value == pytest.approx(0.5)
-
-
 def test_figures_are_those_of_the_metrics(rng):
     model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
     parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))

@@ -5,7 +5,6 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from training.network.average import average
-from training.network.start import start_record
 
 RECORD = {
     "commit": "0" * 40,
@@ -31,13 +30,6 @@ def test_the_mean_counts_each_run_by_its_share(tmp_path):
     record = json.loads((tmp_path / "mean" / "run.json").read_text())
     assert record["commit"] == "1" * 40
     assert [(part["share"], part["commit"][0]) for part in record["average"]] == [(0.25, "0"), (0.75, "1")]
-
-
-def test_a_run_and_one_that_went_on_from_it_are_related(tmp_path):
-    first = run_of(tmp_path / "a", 1.0)
-    second = run_of(tmp_path / "b", 3.0, start=start_record(first / "last.pt"))
-    net = torch.load(average([second, first], [1, 1], tmp_path / "mean"), weights_only=True)["network"]
-    assert net["weight"].tolist() == [2.0]
 
 
 @pytest.mark.parametrize("changed", [{"start": "random weights"}, {"recipe": {"network": {"width": 3}}}])

@@ -72,17 +72,6 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(shards, tmp_path, monkey
     assert all(torch.equal(first[name], second[name]) for name in first)
 
 
-def test_a_run_yields_the_average_of_its_weights(shards, tmp_path):
-    last = train(shards, tmp_path / "averaged", replace(RECIPE, epochs=1, averaged_steps=4), SIZES)
-    alone = train(shards, tmp_path / "alone", replace(RECIPE, epochs=1, averaged_steps=1), SIZES)
-    averaged, moving = (torch.load(last, weights_only=True)[part] for part in ("network", "moving"))
-    own, others = (torch.load(alone, weights_only=True)[part] for part in ("network", "moving"))
-    assert all(torch.equal(own[name], others[name]) for name in own)
-    weight = "photograph.location.weight"
-    assert torch.equal(others[weight], moving[weight])
-    assert not torch.allclose(averaged[weight], moving[weight])
-
-
 def test_held_out_curves_can_be_left_out(shards, tmp_path):
     train(shards, tmp_path / "p2", replace(RECIPE, epochs=1, without_held_out=True), SIZES)
     settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]

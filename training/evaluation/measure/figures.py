@@ -8,7 +8,7 @@ from scipy.optimize import minimize_scalar
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
+from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from crfnet_core.types import Float64Array, IndexArray
 
 #: The errors that reports give; E_lin is x 1e-2, "shape" is in stops (definitions: `crfnet_core.response.metrics`).
@@ -29,15 +29,14 @@ FITTED_SAMPLES, FITTED_DECIMALS = 65, 4
 def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
     """Return the errors of one response on one photograph, in which codes occur as often as `counts`, (256,), says.
 
-    "scale" is by how many stops the light is too bright; "lower" and "partial" are the E_est over the samples up to
-    `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
+    "lower" and "partial" are the E_est over the samples up to `PARTIAL_BRIGHTNESS`, without and with the scaling of the
+    irradiance that fits best.
     """
     linearization = round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS)
     return {
         "E_est": round(estimation_error(true, estimated), DECIMALS),
         "E_lin": 100 * linearization,
         "shape": round(shape_error(true, estimated), DECIMALS),
-        "scale": round(scale_error(true, estimated), DECIMALS),
         "lower": round(_lower_error(true, estimated), DECIMALS),
         "partial": round(_partial_error(true, estimated), DECIMALS),
     }
@@ -60,13 +59,11 @@ def estimate_figures(true: ResponseCurve, estimate: ResponseEstimate, counts: In
     """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds."""
     lower, upper = estimate.band
     inside = (true.brightness >= lower) & (true.brightness <= upper)
-    kind = max(estimate.families, key=estimate.families.__getitem__, default="")
     return curve_figures(true, estimate.curve, counts) | {
         "expected E_est": round(estimate.uncertainty, DECIMALS),
         "expected shape": round(estimate.shape_uncertainty, DECIMALS),
         "band coverage": round(float(inside.mean()), DECIMALS),
         "verdict": str(estimate.verdict),
-        "family": str(kind),
         "weights": fitted_weights(estimate.curve),
     }
 

@@ -20,16 +20,7 @@ from crfnet_core.posterior import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from training.data.real_photographs import RealPhotograph
 from training.data.response_bank import make_bank
-from training.evaluation.baselines import (
-    GAMMA,
-    ORACLE_DORF,
-    ORACLE_HEADROOM,
-    OTHER_BODIES,
-    mean_in_log_irradiance,
-    nearest_of,
-    oracle_curves,
-    with_best_headroom,
-)
+from training.evaluation import baselines
 from training.evaluation.measure.figures import curve_figures, estimate_figures, first_weights
 from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model, load_network
@@ -65,13 +56,17 @@ def measure_real(
 
 def _measure_baselines(protocol: str, photographs: Sequence[RealPhotograph], table: Table, test_set: TestSet) -> None:
     """Add the baselines that the table lacks."""
-    wanted = [photograph for photograph in photographs if table.lacks(protocol, photograph.name, GAMMA)]
+    wanted = [photograph for photograph in photographs if table.lacks(protocol, photograph.name, baselines.GAMMA)]
     truths = {photograph.measured: photograph.truth() for photograph in photographs if wanted}
     for photograph in wanted:
         counts, true = code_counts(read_real_photo(photograph)), truths[photograph.measured]
         others = mean_of_other_bodies(photograph, photographs, truths)
-        curves = test_set.constants | {OTHER_BODIES: others, ORACLE_HEADROOM: with_best_headroom(others, true)}
-        curves |= {ORACLE_DORF: nearest_of(test_set.curves, true)} | oracle_curves(true)
+        curves = baselines.constant_curves() | {
+            baselines.OTHER_BODIES: others,
+            "oracle: mean of the other bodies, best headroom": baselines.with_best_headroom(others, true),
+            "oracle: nearest curve of DoRF": baselines.nearest_of(test_set.curves, true),
+        }
+        curves |= baselines.oracle_curves(true)
         figures = {name: curve_figures(true, curve, counts) for name, curve in curves.items()}
         table.add(_rows(protocol, photograph, true, "", figures))
 
@@ -176,4 +171,5 @@ def mean_of_other_bodies(
             bodies.setdefault(other.body_key, {})[other.measured] = truths[other.measured]
     if not bodies:
         return ResponseCurve.gamma(2.2)
-    return mean_in_log_irradiance([mean_in_log_irradiance(list(curves.values())) for curves in bodies.values()])
+    means = [baselines.mean_in_log_irradiance(list(curves.values())) for curves in bodies.values()]
+    return baselines.mean_in_log_irradiance(means)

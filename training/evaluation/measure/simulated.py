@@ -18,7 +18,7 @@ from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float32Array
 from training.data.scenes import Scene, area_averaged
-from training.evaluation.baselines import GAMMA, oracle_curves
+from training.evaluation.baselines import GAMMA, constant_curves, oracle_curves
 from training.evaluation.measure.figures import curve_figures, estimate_figures
 from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model, load_network
@@ -50,18 +50,15 @@ class Job:
 
     def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
         """Return a row of the table."""
-        scene = self.test_set.files[photograph.scene]
         return {
             "protocol": self.protocol,
             "photograph": photograph.label,
             "estimator": estimator,
             "model": model,
-            "scene": scene.name,
             "scene number": photograph.scene,
-            "kind": scene.kind,
+            "kind": self.test_set.files[photograph.scene].kind,
             "curve": photograph.curve,
             "exposure": photograph.condition.factor,
-            "condition": photograph.condition.name,
         } | figures
 
 
@@ -70,7 +67,7 @@ def measure_simulated(whole: Job, table: Table, workers: int) -> None:
     work = list(_parts(whole, table))
     if not work:
         return
-    _ = whole.test_set.exposures, whole.test_set.constants  # computed once, for all processes
+    _ = whole.test_set.exposures  # computed once, for all processes
     with tqdm(total=sum(len(job.photographs) for job in work), desc=whole.protocol, unit="photograph") as bar:
         for job, rows in zip(work, _run(work, workers), strict=True):
             table.add(rows)
@@ -144,8 +141,7 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
     """Return the guesses of the baselines of a job by name."""
     if not job.has_baselines:
         return {}
-    constants = job.test_set.constants
-    return {GAMMA: constants[GAMMA]} if job.protocol == PAPER else constants | oracle_curves(true)
+    return {GAMMA: ResponseCurve.gamma(2.2)} if job.protocol == PAPER else constant_curves() | oracle_curves(true)
 
 
 @lru_cache(maxsize=1)

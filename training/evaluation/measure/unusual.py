@@ -73,7 +73,7 @@ def _lacks(table: Table, scene: SceneFile, kind: UnusualKind, model: Model) -> b
 
 def _rows(photo: Photo, scene: SceneFile, kind: UnusualKind, model: Model) -> Iterator[Row]:
     """Yield the rows of a picture: the verdicts of a model, asked in all `WAYS`."""
-    columns = {"photograph": label(scene, kind), "model": model.key, "scene": scene.name, "kind": kind.value}
+    columns = {"photograph": label(scene, kind), "model": model.key, "kind": kind.value}
     for way, verdict in zip(WAYS, _verdicts(photo, kind, load_network(model)), strict=True):
         yield {"protocol": PROTOCOL, "estimator": model.name + way, "verdict": verdict} | columns
 

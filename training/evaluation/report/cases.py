@@ -45,7 +45,6 @@ class Cases:
         return next(iter(self.rows.values()))
 
     def __len__(self) -> int:
-        """Return the number of photographs."""
         return len(self.first)
 
     @cached_property

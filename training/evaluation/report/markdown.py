@@ -22,9 +22,6 @@ WIDTH = 120
 #: Figures that are shown with their interval, by the end of their names.
 WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "correlation")
 
-#: Baselines that report.json has and these tables have not.
-HIDDEN = ("sRGB", "Rec.709", "geometric median curve", "oracle: EMoR, 1 component")
-
 #: The estimators that tables by group show beside the models.
 SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
 
@@ -112,7 +109,7 @@ def estimator_tables(report: Report, table: str, figures: Mapping[str, str], gro
     tables: dict[str, list[list[str]]] = {}
     for row in report.table(table):
         is_chosen = first in row and (not groups or row["group"] in groups)
-        if is_chosen and not row["estimator"].startswith((*HIDDEN, *others)):
+        if is_chosen and not row["estimator"].startswith(tuple(others)):
             cells = [row["estimator"], *(_cell(name, row.get(name)) for name in figures.values())]
             tables.setdefault(_name(row), []).append(cells)
     return "\n".join(markdown_table([name, *figures], rows) for name, rows in tables.items())
@@ -158,5 +155,4 @@ def _cell(name: str, figure: Any) -> str:
 
 
 def _number(figure: Any) -> str:
-    """Return a figure as text."""
     return f"{figure:.2f}" if isinstance(figure, float) else str(figure)

@@ -109,5 +109,4 @@ def _errors(
 
 
 def _row(table: str, group: str, estimator: str, cases: Cases, figures: summary.Figures) -> ReportRow:
-    """Return a row of the report."""
     return {"table": table, "group": group, "estimator": estimator, "photographs": len(cases)} | figures

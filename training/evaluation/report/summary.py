@@ -119,7 +119,6 @@ def rounded(figures: Figures) -> Figures:
 
 
 def _rounded(value: Any) -> Any:
-    """Return a figure rounded."""
     if isinstance(value, Interval):
         return [round(part, 4) for part in value]
     return round(value, 4) if isinstance(value, float) else value

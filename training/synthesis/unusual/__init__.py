@@ -9,6 +9,6 @@ graphics         screenshots and drawings
 kinds            the list of kinds, each with its reason; windows and whole frames of a kind
 """
 
-from training.synthesis.unusual.kinds import RECIPES, UnusualKind, random_exposure, unusual_photo, unusual_windows
+from training.synthesis.unusual.kinds import RENDERINGS, UnusualKind, random_exposure, unusual_photo, unusual_windows
 
-__all__ = ["RECIPES", "UnusualKind", "random_exposure", "unusual_photo", "unusual_windows"]
+__all__ = ["RENDERINGS", "UnusualKind", "random_exposure", "unusual_photo", "unusual_windows"]

@@ -18,7 +18,7 @@ DRAWN_SIZE = 2 * WINDOW_SIZE  # the side of a window at the size at which drawin
 #: Length of a word in letters, and words of a line at most.
 WORD, WORDS = (1, 11), 60
 
-Color = tuple[int, int, int]
+Color = tuple[int, ...]  # red, green and blue
 
 #: Pillow's own font of a size, loaded once.
 _font = cache(ImageFont.load_default)
@@ -124,11 +124,8 @@ def _draw_shape(
 def _gray(rng: np.random.Generator, is_dark: bool) -> Color:
     """Return a dark or a light gray, nearly neutral."""
     level = rng.integers(0, 60) if is_dark else rng.integers(215, 256)
-    red, green, blue = np.clip(level + rng.integers(-4, 5, 3), 0, 255).tolist()
-    return red, green, blue
+    return tuple(np.clip(level + rng.integers(-4, 5, 3), 0, 255).tolist())
 
 
 def _color(rng: np.random.Generator) -> Color:
-    """Return any color."""
-    red, green, blue = rng.integers(0, 256, 3).tolist()
-    return red, green, blue
+    return tuple(rng.integers(0, 256, 3).tolist())

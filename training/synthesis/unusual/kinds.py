@@ -1,7 +1,7 @@
 """The kinds of pictures that an estimate must refuse, and how each is made of linear light."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -46,16 +46,6 @@ class UnusualKind(StrEnum):
     FALSE_COLOR = "false color"
 
 
-@dataclass(frozen=True)
-class Recipe:
-    """How a kind is made."""
-
-    rendering: Rendering
-    #: Whether a sensor's blur and noise come before the rendering, and sharpening and grain after it.
-    is_recorded: bool
-    is_compressed: bool  # whether a share is compressed as JPEG of random quality at the end
-
-
 RENDERINGS: dict[UnusualKind, Rendering] = {
     UnusualKind.LOG_FOOTAGE: log_footage,
     UnusualKind.NEAR_LINEAR: near_linear,
@@ -74,13 +64,13 @@ RENDERINGS: dict[UnusualKind, Rendering] = {
     UnusualKind.FALSE_COLOR: false_color,
 }
 
-_ROWS = {row["kind"]: row for row in table_rows(Path(__file__).with_name("kinds.csv"))}
+#: The table beside this module; it also gives the reason why an estimate of the response of a kind must not be trusted.
+_ROWS = table_rows(Path(__file__).with_name("kinds.csv"))
 
-#: How each kind is made; kinds.csv beside this module also says why an estimate of its response must not be trusted.
-RECIPES = {
-    kind: Recipe(rendering, _ROWS[kind]["is_recorded"] == "yes", _ROWS[kind]["is_compressed"] == "yes")
-    for kind, rendering in RENDERINGS.items()
-}
+#: The kinds with a sensor's blur and noise before the rendering, and sharpening and grain after it; and the kinds of
+#: which a share is compressed as JPEG of random quality at the end.
+RECORDED = {row["kind"] for row in _ROWS if row["is_recorded"] == "yes"}
+COMPRESSED = {row["kind"] for row in _ROWS if row["is_compressed"] == "yes"}
 
 
 def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng: np.random.Generator) -> Uint8Array:
@@ -89,16 +79,15 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
     The settings of the kind are drawn once for all windows, which may have another size. `exposure` is the irradiance
     per unit of light; irradiance 1 is white, and some kinds hold brighter light.
     """
-    recipe, capture = RECIPES[kind], Capture.draw(rng)
-    irradiance = light * np.float32(exposure)
-    if recipe.is_recorded:
+    capture, irradiance = Capture.draw(rng), light * np.float32(exposure)
+    if kind in RECORDED:
         irradiance = np.maximum(sensed(irradiance, capture, rng), 0)
     else:
         capture = replace(capture, sharpening=0.0, grain=0.0)
-    if not recipe.is_compressed:
+    if kind not in COMPRESSED:
         capture = Capture()
     after = replace(capture, shot_noise=0.0, read_noise=0.0, blur=0.0)
-    return simulate_capture(recipe.rendering(irradiance, rng), UNIFORM, after, rng)
+    return simulate_capture(RENDERINGS[kind](irradiance, rng), UNIFORM, after, rng)
 
 
 def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> Photo:

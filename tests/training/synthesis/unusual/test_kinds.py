@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.statistics.windows import WINDOW_SIZE
-from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, unusual_photo, unusual_windows
+from training.synthesis.unusual import RENDERINGS, UnusualKind, random_exposure, unusual_photo, unusual_windows
 
 
 @pytest.fixture
@@ -30,7 +30,7 @@ def test_windows_are_codes_that_depend_on_seed_and_light(kind, light):
 @pytest.mark.parametrize("kind", UnusualKind)
 def test_a_rendering_stays_in_range_in_darkness_and_in_the_sun(kind, light, rng):
     harsh = np.concatenate([np.zeros_like(light[:1]), light[:1] * 1e5])
-    encoded = RECIPES[kind].rendering(harsh, rng)
+    encoded = RENDERINGS[kind](harsh, rng)
     assert np.isfinite(encoded).all()
     assert encoded.min() >= -1e-6
     assert encoded.max() <= 1 + 1e-6
@@ -45,7 +45,7 @@ def test_a_photograph_is_a_whole_frame_that_can_be_analyzed(kind, scene):
 
 
 def test_limited_range_leaves_out_black_and_white(light, rng):
-    encoded = RECIPES[UnusualKind.LIMITED_RANGE].rendering(light * np.float32(3), rng)
+    encoded = RENDERINGS[UnusualKind.LIMITED_RANGE](light * np.float32(3), rng)
     assert encoded.min() >= 16 / 255
     assert encoded.max() == pytest.approx(235 / 255)
 
