@@ -46,6 +46,13 @@ def png_chunk(name, content):
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
+def bmp(width, height, content, *, bits=24, coding=0, size=40, fields=b"", palette=b""):
+    """Return a BMP with a header of `size` bytes: those of every one, then `fields`, then zeros."""
+    start = struct.pack("<IiiHHIIiiII", size, width, height, 1, bits, coding, len(content), 0, 0, len(palette) // 4, 0)
+    head = (start + fields).ljust(size, b"\0") + palette
+    return struct.pack("<2sIHHI", b"BM", 14 + len(head) + len(content), 0, 0, 14 + len(head)) + head + content
+
+
 def jpeg(path, **attributes):
     """Write a JPEG of 120 x 160 pixels, smooth colour with some noise, and return its bytes; see `write_image`."""
     height, width = 120, 160

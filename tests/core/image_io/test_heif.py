@@ -9,6 +9,7 @@ from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.folders import changed, written
 from tests.helpers.refusals import refused
 
 #: The largest difference in codes: lossless RGB is exact; a matrix rounds twice, and limited range has fewer codes.
@@ -51,12 +52,8 @@ def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
 
 @pytest.mark.parametrize(("code", "name"), [(16, "PQ"), (18, "HLG"), (8, "linear"), (13, "")])
 def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
-    content = (heif / "rgb10.heic").read_bytes()
-    assert content.count(b"nclx\x00\x0c\x00\x0d") == 1
-    (tmp_path / "a.heic").write_bytes(
-        content.replace(b"nclx\x00\x0c\x00\x0d", b"nclx\x00\x0c" + struct.pack(">H", code))
-    )
-    color = read_codes(tmp_path / "a.heic").metadata.color
+    old, new = (b"nclx\0\x0c" + struct.pack(">H", each) for each in (13, code))
+    color = read_codes(changed(heif / "rgb10.heic", old, new, to=tmp_path / "a.heic")).metadata.color
     assert (color.transfer, color.source) == (name, "CICP")
     assert color.primaries == DISPLAY_P3
 
@@ -74,8 +71,7 @@ def with_gain_map(content, mark):
 def test_a_gain_map_is_said_and_the_base_picture_read(heif, tmp_path, mark):
     content = (heif / "rgb8.heic").read_bytes()
     assert not read_photo(heif / "rgb8.heic").metadata.has_gain_map
-    (tmp_path / "a.heic").write_bytes(with_gain_map(content, mark))
-    values = read_codes(tmp_path / "a.heic")
+    values = read_codes(written(tmp_path / "a.heic", with_gain_map(content, mark)))
     assert values.metadata.has_gain_map
     np.testing.assert_array_equal(values.codes, colored_ramp(8))
 
@@ -116,19 +112,17 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
     if name.endswith("avif"):
         pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
     content = (heif / name).read_bytes()
-    path = tmp_path / name
-    path.write_bytes(content[: int(len(content) * fraction)])
+    path = written(tmp_path / name, content[: int(len(content) * fraction)])
     with refused(PhotoError, "damaged"):
         read_photo(path)
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     """They would end the process in pi-heif 1.4."""
-    content = (heif / "phone.heic").read_bytes()
-    assert content.count(b"Exif\0\0\0\0\x0epitm") == 1
-    (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
+    rest = b"xif\0\0\0\0\x0epitm"
+    path = changed(heif / "phone.heic", b"E" + rest, b"\xff" + rest, to=tmp_path / "a.heic")
     with refused(PhotoError, "damaged", problem="the type of an item is not text"):
-        read_photo(tmp_path / "a.heic")
+        read_photo(path)
 
 
 @pytest.mark.parametrize(
@@ -145,9 +139,9 @@ def test_a_coding_that_the_decoder_lacks_is_not_called_damage(heif, tmp_path, na
     if name != "a.heic":
         Image.fromarray(colored_ramp(8)).save(tmp_path / name)
         content = (tmp_path / name).read_bytes()
-    (tmp_path / name).write_bytes(content.replace(stored, other, 1))
+    path = written(tmp_path / name, content.replace(stored, other, 1))
     with refused(PhotoError, "coding_not_read"):
-        read_photo(tmp_path / name)
+        read_photo(path)
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
@@ -158,10 +152,8 @@ def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
 
 
 def test_exif_that_is_not_utf8_is_read(heif, tmp_path):
-    content = (heif / "phone.heic").read_bytes()
-    assert content.count(b"Apple\0") == 1
-    (tmp_path / "a.heic").write_bytes(content.replace(b"Apple\0", b"Appl\xe9\0"))
-    assert read_codes(tmp_path / "a.heic").metadata.make == "Appl?"
+    path = changed(heif / "phone.heic", b"Apple\0", b"Appl\xe9\0", to=tmp_path / "a.heic")
+    assert read_codes(path).metadata.make == "Appl?"
 
 
 @pytest.mark.filterwarnings("error")
@@ -171,5 +163,5 @@ def test_damaged_exif_of_avif_warns_nobody(tmp_path):
     Image.fromarray(colored_ramp(8)).save(tmp_path / "a.avif", exif=exif)
     content = (tmp_path / "a.avif").read_bytes()
     at = content.index(b"\x0f\x01\x02\0") if b"\x0f\x01\x02\0" in content else content.index(b"\x01\x0f\0\x02")
-    (tmp_path / "a.avif").write_bytes(content[: at + 4] + b"\x7f" * 4 + content[at + 8 :])
-    assert read_codes(tmp_path / "a.avif").metadata.make == ""
+    path = written(tmp_path / "a.avif", content[: at + 4] + b"\x7f" * 4 + content[at + 8 :])
+    assert read_codes(path).metadata.make == ""

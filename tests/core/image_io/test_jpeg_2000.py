@@ -10,6 +10,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.folders import written
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
 
@@ -36,8 +37,7 @@ def jp2(path, codes, boxes=b"", color=b"\1\0\0\0\0\0\x10", components=None):
     header = box(b"ihdr", struct.pack(">IIH4B", height, width, channels, 7, 7, 0, 0))
     header += box(b"colr", color) + boxes
     start = box(b"jP  ", b"\r\n\x87\n") + box(b"ftyp", b"jp2 \0\0\0\0jp2 ")
-    path.write_bytes(start + box(b"jp2h", header) + box(b"jp2c", bytes(stream)))
-    return path
+    return written(path, start + box(b"jp2h", header) + box(b"jp2c", bytes(stream)))
 
 
 def channels(*entries):

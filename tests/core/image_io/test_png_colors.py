@@ -16,6 +16,7 @@ from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
 from crfnet_core.photograph.metadata.icc import DAMAGED
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
+from tests.helpers.folders import written
 from tests.helpers.refusals import refused
 
 #: A profile in Adobe RGB as PNG holds it.
@@ -24,8 +25,7 @@ ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
 
 def tags(path, **chunks):
     content = b"".join(png_chunk(name.encode(), content) for name, content in chunks.items())
-    path.write_bytes(png(2, 2, bytes(14), chunks=content))
-    return read_photo(path).metadata.color
+    return read_photo(written(path, png(2, 2, bytes(14), chunks=content))).metadata.color
 
 
 def chrm(primaries):
@@ -91,9 +91,8 @@ def test_damaged_chunks_say_nothing(tmp_path, chunks):
 
 
 def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))[:70])
-    header = with_color_chunks(oiio.ImageSpec(), path)
+    whole = png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))
+    header = with_color_chunks(oiio.ImageSpec(), written(tmp_path / "a.png", whole[:70]))
     assert [each.name for each in header.extra_attribs if each.name in ("png:gamma", "chromaticities")] == ["png:gamma"]
 
 
@@ -105,8 +104,7 @@ def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
     chunk = png_chunk(b"eXIf", name + exif.tobytes().removeprefix(b"Exif\0\0"))
     content = png(2, 2, bytes([0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4]))
     at = content.index(b"IDAT" if place == "in front" else b"IEND") - 4
-    (tmp_path / "a.png").write_bytes(content[:at] + chunk + content[at:])
-    values = read_codes(tmp_path / "a.png")
+    values = read_codes(written(tmp_path / "a.png", content[:at] + chunk + content[at:]))
     assert values.codes[..., 0].tolist() == [[3, 1], [4, 2]]
     assert (values.metadata.make, values.metadata.is_turned) == ("Maker", True)
 
@@ -125,6 +123,5 @@ def test_texts_named_like_attributes_change_nothing(tmp_path):
     texts = {b"oiio:BitsPerSample": b"3", b"Orientation": b"6", b"png:palette": b"1", b"png:sRGB": b"0"}
     texts |= {b"dpx:Transfer": b"Logarithmic", b"colorInteropID": b"lin_ap1_scene"}
     chunks = b"".join(png_chunk(b"tEXt", name + b"\0" + value) for name, value in texts.items())
-    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=chunks))
-    values = read_codes(tmp_path / "a.png")
+    values = read_codes(written(tmp_path / "a.png", png(2, 2, bytes(14), chunks=chunks)))
     assert (values.bit_depth, values.metadata.is_turned, values.metadata.color) == (8, False, ColorTags())
