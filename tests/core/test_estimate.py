@@ -7,20 +7,14 @@ import pytest
 
 import crfnet
 import crfnet_core
+from crfnet_core import AnalysisOptions, EmorBasis, Photo, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.analysis import cut_photograph
-from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
 from crfnet_core.network.inference import Predictions
 from crfnet_core.network.pooling import agreeing, robust_mean
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Evidence, Family, Posterior, Verdict
 from crfnet_core.posterior.factors import family_factors
-from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 from tests.helpers.refusals import refused

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import beside_limits
 from crfnet_core.response.curve import SAMPLES, UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 
@@ -40,11 +39,3 @@ def test_the_shape_error_ignores_the_exposure_which_is_the_scale_error():
     assert shape_error(STRAIGHT, clipped) < 2e-3
     assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
     assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("value", "words"),
-    [(0.2, "0.20"), (0.1101, "0.1101"), (0.11, "0.11"), (0.10999, "0.10999"), (0.11 + 1e-9, "0.110000")],
-)
-def test_a_number_shows_on_which_side_of_a_limit_it_lies(value, words):
-    assert beside_limits(value, 0.11) == words

@@ -13,9 +13,10 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.crafted_files import png, png_chunk
+from tests.helpers.folders import written
 from tests.helpers.images import read_image, write_image
 from tests.helpers.memory import memory_of_reading
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 CODES8 = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 CODES16 = np.array([[[0, 1, 2], [32767, 32768, 32769]], [[65533, 65534, 65535], [100, 200, 300]]], np.uint16)
@@ -25,8 +26,6 @@ FORMATS = {
     **{"a.png": "PNG", "a.tif": "TIFF", "a.webp": "WebP", "a.dpx": "DPX", "a.bmp": "BMP"},
     **{"a.jp2": "JPEG 2000", "a.j2k": "JPEG 2000", "a.jxl": "JPEG XL"},
 }
-
-
 DEEP = ("a.png", "a.tif", "a.dpx", "a.jxl", "a.jp2")
 
 
@@ -56,9 +55,8 @@ def test_10_and_12_bit_codes_over_their_own_largest(tmp_path, name, bits):
 
 def test_no_profile_or_gamma_is_applied(tmp_path):
     rows = b"".join(b"\0" + bytes(row.ravel().tolist()) for row in CODES8)
-    path = tmp_path / "a.png"
-    path.write_bytes(png(2, 2, rows, chunks=png_chunk(b"gAMA", struct.pack(">I", 100000))))
-    np.testing.assert_array_equal(read_codes(path).codes, CODES8)
+    content = png(2, 2, rows, chunks=png_chunk(b"gAMA", struct.pack(">I", 100000)))
+    np.testing.assert_array_equal(read_codes(written(tmp_path / "a.png", content)).codes, CODES8)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg", "a.webp", "a.avif"])
@@ -137,8 +135,7 @@ def ultra_hdr(tmp_path):
 
 def test_ultra_hdr_gives_the_standard_image(tmp_path, ultra_hdr):
     whole = ultra_hdr.read_bytes()
-    plain = tmp_path / "plain.jpg"
-    plain.write_bytes(whole[: whole.index(b"\xff\xd9", whole.index(b"\xff\xda")) + 2])
+    plain = written(tmp_path / "plain.jpg", whole[: whole.index(b"\xff\xd9", whole.index(b"\xff\xda")) + 2])
     photo = read_photo(ultra_hdr)
     assert (photo.bit_depth, photo.path, photo.metadata.has_gain_map) == (8, ultra_hdr, True)
     np.testing.assert_array_equal(photo.pixels, read_image(plain, kind="uint8") / np.float32(255))
@@ -162,8 +159,7 @@ def test_memory_is_the_codes_alone(tmp_path):
 
 @pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text"), io.TextIOWrapper(io.BytesIO(b"\xff\xd8"))])
 def test_other_sources_are_refused(source):
-    with refused(PhotoError, "photograph_source"):
-        read_photo(source)
+    assert refusal_of(PhotoError, read_photo, source).code == "photograph_source"
 
 
 def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
@@ -191,8 +187,7 @@ def test_a_file_that_cannot_be_read_is_refused(problem):
         def read(self, size=-1):
             raise problem
 
-    with refused(PhotoError, "cannot_open_photograph"):
-        read_photo(Broken())
+    assert refusal_of(PhotoError, read_photo, Broken()).code == "cannot_open_photograph"
 
 
 def test_an_error_of_bytes_names_no_temporary_file():

@@ -10,7 +10,7 @@ from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, UNIFORM, ResponseCurve, nearest_increasing
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import hlg_encode, rec709_encode, srgb_encode
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 
@@ -84,8 +84,7 @@ def test_nearest_increasing_is_the_projection(samples):
     ],
 )
 def test_what_makes_no_curve_is_refused(make, argument, code):
-    with refused(CurveError, code):
-        make(argument)
+    assert refusal_of(CurveError, make, argument).code == code
 
 
 def steep():
@@ -140,8 +139,7 @@ def test_a_number_gives_a_number():
     ],
 )
 def test_code_values_are_refused(codes):
-    with refused(CurveError, "brightness_codes"):
-        ResponseCurve.gamma().inverse(codes)
+    assert refusal_of(CurveError, ResponseCurve.gamma().inverse, codes).code == "brightness_codes"
 
 
 class OnDevice:
@@ -156,8 +154,7 @@ class OnDevice:
 )
 @pytest.mark.parametrize("function", ["forward", "inverse"])
 def test_anything_but_numbers_is_refused(argument, function):
-    with refused(CurveError, "not_numbers"):
-        getattr(ResponseCurve.gamma(), function)(argument)
+    assert refusal_of(CurveError, getattr(ResponseCurve.gamma(), function), argument).code == "not_numbers"
 
 
 def test_the_irradiances_are_uniform_and_cannot_be_changed():

@@ -6,17 +6,13 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
+from crfnet_core import AnalysisOptions, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import CRFNetError, EstimateError, Notice, PhotoError
-from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import SCHEMA_VERSION, ResponseEstimate
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.posterior import Family
-from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 @pytest.fixture(scope="module")
@@ -79,8 +75,7 @@ def test_what_a_later_version_adds_is_left_out(estimate):
     ],
 )
 def test_another_document_is_refused(document, code):
-    with refused(EstimateError, code):
-        ResponseEstimate.from_dict(document)
+    assert refusal_of(EstimateError, ResponseEstimate.from_dict, document).code == code
 
 
 #: Entries of a document, and values that they do not have.
@@ -116,8 +111,7 @@ def test_a_damaged_entry_is_refused(estimate, place):
         for folder in folders:
             entry = entry[int(folder) if isinstance(entry, list) else folder]
         entry[name] = value
-        with refused(EstimateError, "damaged_estimate"):
-            ResponseEstimate.from_dict(document)
+        assert refusal_of(EstimateError, ResponseEstimate.from_dict, document).code == "damaged_estimate"
 
 
 @pytest.mark.parametrize("given", ["plate.jpg", np.zeros((300, 300, 3), np.float32), ["plate.jpg"], 3])

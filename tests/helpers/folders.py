@@ -3,7 +3,7 @@
 
 def written(path, content):
     """Write bytes, or text as UTF-8, and return the path."""
-    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
     return path
 
 

@@ -3,10 +3,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core import ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import CameraAnswer
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.images import read_image
 

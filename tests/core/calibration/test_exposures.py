@@ -3,6 +3,7 @@ import pytest
 
 from crfnet_core.calibration.exposures import ExposureLabel, parse_times, stack_exposures
 from crfnet_core.errors import CalibrationError
+from tests.helpers.refusals import refusal_of
 
 
 def of_times(*seconds):
@@ -43,6 +44,4 @@ def test_times_are_read_from_a_list():
 
 @pytest.mark.parametrize("text", ["", "1/0", "fast", "-1", "nan", "inf", "1/60,"])
 def test_a_text_that_is_not_a_time_is_refused(text):
-    with pytest.raises(CalibrationError) as caught:
-        parse_times(text)
-    assert caught.value.code == "bad_seconds"
+    assert refusal_of(CalibrationError, parse_times, text).code == "bad_seconds"

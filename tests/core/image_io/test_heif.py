@@ -10,7 +10,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.folders import changed, written
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 #: The largest difference in codes: lossless RGB is exact; a matrix rounds twice, and limited range has fewer codes.
 FILES = {"rgb8.heic": 0, "rgb10.heic": 0, "full8.heic": 1, "limited8.heic": 2, "limited10.heic": 2}
@@ -102,8 +102,7 @@ def test_alpha_of_avif_is_told_from_none(tmp_path):
 )
 def test_a_missing_package_is_named(heif, monkeypatch, name, package, code):
     monkeypatch.setitem(sys.modules, package, None)
-    with refused(PhotoError, code):
-        read_photo(heif / name)
+    assert refusal_of(PhotoError, read_photo, heif / name).code == code
 
 
 @pytest.mark.parametrize("name", ["rgb8.heic", "limited10.avif"])
@@ -113,8 +112,7 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
         pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
     content = (heif / name).read_bytes()
     path = written(tmp_path / name, content[: int(len(content) * fraction)])
-    with refused(PhotoError, "damaged"):
-        read_photo(path)
+    assert refusal_of(PhotoError, read_photo, path).code == "damaged"
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
@@ -140,15 +138,13 @@ def test_a_coding_that_the_decoder_lacks_is_not_called_damage(heif, tmp_path, na
         Image.fromarray(colored_ramp(8)).save(tmp_path / name)
         content = (tmp_path / name).read_bytes()
     path = written(tmp_path / name, content.replace(stored, other, 1))
-    with refused(PhotoError, "coding_not_read"):
-        read_photo(path)
+    assert refusal_of(PhotoError, read_photo, path).code == "coding_not_read"
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
     monkeypatch.setattr("crfnet_core.photograph.image_io.header_checks.MAX_PIXELS", 64 * 48 - 1)
     monkeypatch.setattr("crfnet_core.photograph.image_io.pillow_files._heic", None)
-    with refused(PhotoError, "too_many_pixels"):
-        read_photo(heif / "rgb8.heic")
+    assert refusal_of(PhotoError, read_photo, heif / "rgb8.heic").code == "too_many_pixels"
 
 
 def test_exif_that_is_not_utf8_is_read(heif, tmp_path):

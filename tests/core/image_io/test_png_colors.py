@@ -17,7 +17,7 @@ from crfnet_core.photograph.metadata.icc import DAMAGED
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.folders import written
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 #: A profile in Adobe RGB as PNG holds it.
 ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
@@ -81,8 +81,7 @@ def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
 
 
 def test_limited_range_is_refused(tmp_path):
-    with refused(PhotoError, "coding_not_read"):
-        tags(tmp_path / "a.png", cICP=bytes([1, 1, 0, 0]))
+    assert refusal_of(PhotoError, tags, tmp_path / "a.png", cICP=bytes([1, 1, 0, 0])).code == "coding_not_read"
 
 
 @pytest.mark.parametrize("chunks", [{}, {"cHRM": bytes(32)}, {"cHRM": bytes(31)}, {"cICP": bytes(3)}, {"sRGB": b""}])

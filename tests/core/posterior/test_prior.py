@@ -5,13 +5,12 @@ import pytest
 from crfnet_core.errors import CRFNetError, PriorError
 from crfnet_core.posterior import Family, Prior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, packaged_priors
+from tests.helpers.folders import written
 from tests.helpers.refusals import refused
 
 
-def written(folder, entries):
-    path = folder / "own.json"
-    path.write_text(entries if isinstance(entries, str) else json.dumps(entries))
-    return path
+def prior_file(folder, entries):
+    return written(folder / "own.json", entries if isinstance(entries, str) else json.dumps(entries))
 
 
 def test_the_packaged_priors_are_distributions():
@@ -26,7 +25,7 @@ def test_the_packaged_priors_are_distributions():
 
 
 def test_a_file_of_ones_own_is_scaled_to_a_sum_of_1(tmp_path):
-    prior = Prior.load(written(tmp_path, {"shares": {"phone": 0.5, "log": 0.3}, "evidence": 1}))
+    prior = Prior.load(prior_file(tmp_path, {"shares": {"phone": 0.5, "log": 0.3}, "evidence": 1}))
     assert prior.shares == pytest.approx({Family.PHONE: 0.625, Family.LOG: 0.375})
     assert (prior.name, prior.evidence) == ("own", 1)
 
@@ -55,7 +54,7 @@ REFUSED = {
 
 @pytest.mark.parametrize(("code", "entries"), [(code, each) for code, several in REFUSED.items() for each in several])
 def test_a_file_that_describes_no_prior_is_refused_in_one_line(tmp_path, code, entries):
-    path = written(tmp_path, entries)
+    path = prior_file(tmp_path, entries)
     with refused(PriorError, code, path=path):
         Prior.load(path)
 

@@ -5,13 +5,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from crfnet_core import Photo, read_photo
 from crfnet_core.colorimetry import REC709
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES, Kind, Recognition, recognize, refuse_tagged
 from crfnet_core.photograph.recognition.levels import LUMA, Levels, has_few_levels, is_limited_range
 from crfnet_core.photograph.recognition.log_footage import (

@@ -23,7 +23,7 @@ from tests.helpers.footage import log_picture
 from tests.helpers.images import write_image
 from tests.helpers.processes import start_interruptible
 from tests.helpers.records import records_in
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
 
@@ -33,8 +33,7 @@ def without_records(files):
 
 
 def test_a_folder_is_searched_and_its_subfolders_are_kept(estimate, photographs, tmp_path):
-    done = estimate(photographs, *QUICK)
-    assert (done.code, done.err) == (0, "")
+    assert estimate(photographs, *QUICK).printed
     assert listed(tmp_path / "out") == sorted(
         [f"{stem}{suffix}" for stem in "ab" for suffix in (".spi1d", ".cube", ".clf", ".json")]
         + ["config.ocio", "day 2", ESTIMATES]
@@ -180,8 +179,7 @@ def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
     assert list(file.read()) == ["a.jpg"]
     with file.path.open("a") as lines:
         lines.write(json.dumps(dataclasses.asdict(PhotographRecord(photograph="b.jpg", place="b.jpg")) | change) + "\n")
-    with refused(PlateError, "not_records"):
-        file.read()
+    assert refusal_of(PlateError, file.read).code == "not_records"
 
 
 def test_an_error_does_not_hide_the_record_of_another_runs_files(tmp_path):

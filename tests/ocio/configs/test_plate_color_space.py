@@ -10,7 +10,7 @@ from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
 from crfnet_core.colorimetry import DISPLAY_P3
 from tests.helpers.configs import LUT, SPACE, converted, loaded
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 BUILT_IN = ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v2.1.0_aces-v1.3_ocio-v2.3")
 
@@ -56,8 +56,7 @@ def added(config, *spaces):
     ],
 )
 def test_a_space_that_no_config_can_have_is_refused(name, lut_file, exposure, code):
-    with refused(ConfigError, code):
-        PlateColorSpace(name, lut_file, exposure=exposure)
+    assert refusal_of(ConfigError, PlateColorSpace, name, lut_file, exposure=exposure).code == code
 
 
 class TestAdding:
@@ -69,8 +68,7 @@ class TestAdding:
         np.testing.assert_allclose(result, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
 
     def test_a_config_without_any_way_from_rec709_is_refused(self):
-        with refused(ConfigError, "config_without_rec709"):
-            added(small_config(), SPACE)
+        assert refusal_of(ConfigError, added, small_config(), SPACE).code == "config_without_rec709"
 
 
 class TestPrimaries:

@@ -13,7 +13,7 @@ from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import through_lut
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 SUFFIXES = tuple(WRITERS)
 POWERS = (2.2, 1.8, 2.0)
@@ -89,8 +89,7 @@ class TestRgbLut:
 
     def test_tables_that_differ_in_shape_are_refused(self):
         for channels in ((Lut1D([0, 1]), Lut1D([0, 1])), (Lut1D([0, 1]), Lut1D([0, 1]), Lut1D([0, 0.5, 1]))):
-            with refused(LutError, "lut_tables_differ"):
-                RgbLut1D(channels)
+            assert refusal_of(LutError, RgbLut1D, channels).code == "lut_tables_differ"
 
 
 class TestFfmpeg:

@@ -11,10 +11,9 @@ from hypothesis.extra.numpy import arrays
 from crfnet.errors import LutError
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from crfnet_core.errors import CRFNetError
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core import CRFNetError, ResponseCurve
 from tests.helpers.configs import through_lut
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 SUFFIXES = tuple(WRITERS)
 EXTENDED = (-0.125, 1.125)
@@ -83,12 +82,10 @@ def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, v
 def test_a_file_is_replaced_only_when_asked_and_by_a_lut(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
     path.write_text("mine")
-    with refused(LutError, "exists"):
-        write_lut(path, Lut1D([0, 1]))
+    assert refusal_of(LutError, write_lut, path, Lut1D([0, 1])).code == "exists"
     paths = (partial(read_lut, name) for name in (5, "a\0.cube", "\ud800.cube"))
     for call in (partial(write_lut, path, 5, overwrite=True), partial(inverse_response_lut, 5), *paths):
-        with refused(CRFNetError, "argument_kind"):
-            call()
+        assert refusal_of(CRFNetError, call).code == "argument_kind"
     assert path.read_text() == "mine"
     write_lut(path, Lut1D([0, 1]), overwrite=True)
     assert read_lut(str(path)) == Lut1D([0, 1])

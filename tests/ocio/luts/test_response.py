@@ -8,7 +8,7 @@ from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet.luts.response import read_response, response_of_lut
 from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 GRID = np.linspace(0, 1, 4081)
 
@@ -37,8 +37,7 @@ def test_the_scale_of_the_lut_does_not_count():
     ],
 )
 def test_other_luts_are_refused(lut, code):
-    with refused(LutError, code):
-        response_of_lut(lut)
+    assert refusal_of(LutError, response_of_lut, lut).code == code
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
@@ -71,5 +70,4 @@ def test_a_lut_of_other_codes_than_0_to_1_is_refused(tmp_path, suffix, codes, fo
     low, high = codes
     lut = Lut1D(low + (high - low) * GRID ** (1 / 2.2)) if forward else Lut1D(GRID**2.2, domain=codes)
     write_lut(tmp_path / f"a{suffix}", lut)
-    with refused(LutError, "lut_of_codes"):
-        read_response(tmp_path / f"a{suffix}")
+    assert refusal_of(LutError, read_response, tmp_path / f"a{suffix}").code == "lut_of_codes"

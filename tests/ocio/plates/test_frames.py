@@ -7,7 +7,7 @@ from crfnet.errors import PlateError
 from crfnet.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence, find_frames, sample_frames
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 def touch(folder, *names):
@@ -119,8 +119,7 @@ def test_a_specification_stands_for_ascending_numbers(frames, numbers):
 
 @pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1 2", "1.5", "٣", "1-5x0", "1-2x0.5"])
 def test_a_malformed_specification_is_refused(frames):
-    with refused(PlateError, "bad_frames"):
-        parse_frames(frames)
+    assert refusal_of(PlateError, parse_frames, frames).code == "bad_frames"
 
 
 @pytest.mark.parametrize("frames", ["0-999999999", "1-5000000"])
@@ -131,8 +130,7 @@ def test_an_endless_range_is_refused_at_once(frames):
 
 def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
-    with refused(PlateError, "frames_far_apart"):
-        find_frames(tmp_path / "p.%d.png")
+    assert refusal_of(PlateError, find_frames, tmp_path / "p.%d.png").code == "frames_far_apart"
     assert find_frames(tmp_path / "p.%d.png", "1").numbers == (1,)
 
 
@@ -149,8 +147,7 @@ def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     (tmp_path / "empty").mkdir()
     touch(tmp_path / "empty", "readme.txt", "p.0001.png", ".p.0002.png")
-    with refused(PlateError, code):
-        find_frames(tmp_path / name, frames)
+    assert refusal_of(PlateError, find_frames, tmp_path / name, frames).code == code
 
 
 @pytest.mark.parametrize(
