@@ -77,8 +77,7 @@ def test_a_network_without_pooling_is_pooled_by_the_rule(bank):
 def test_a_network_that_pools_has_the_last_word(bank):
     windows = [evidence_for(row) for row in bank.weights[[5, 5, 1, 5, 5]]]
     estimate = asked(photo(), FakeNetwork(windows, pooled=evidence_for(bank.weights[2], precision=300)))
-    true = bank.brightness[2]
-    assert np.linalg.norm(estimate.curve.brightness - true) < 0.1
+    assert np.linalg.norm(estimate.curve.brightness - bank.brightness[2]) < 0.1
     assert [window.kept for window in estimate.windows] == [True, True, False, True, True]
 
 
@@ -124,8 +123,7 @@ def test_the_estimate_says_what_the_posterior_says(bank):
     assert estimate.families == expected.families
     assert estimate.verdict is Verdict.from_posterior(expected)
     np.testing.assert_array_equal(estimate.band, expected.band())
-    basis = EmorBasis.load()
-    np.testing.assert_array_equal(estimate.weights, basis.project(expected.curve.brightness))
+    np.testing.assert_array_equal(estimate.weights, EmorBasis.load().project(expected.curve.brightness))
     assert (estimate.prior, estimate.model) == ("even", "fake 000000000000")
 
 

@@ -120,8 +120,7 @@ def test_associated_alpha_is_divided_out(tmp_path):
 def test_the_content_counts_not_the_suffix(tmp_path, content, name):
     write_image(tmp_path / content, CODES8)
     expected = read_photo(tmp_path / content).pixels
-    path = (tmp_path / content).rename(tmp_path / name)
-    np.testing.assert_array_equal(read_photo(path).pixels, expected)
+    np.testing.assert_array_equal(read_photo((tmp_path / content).rename(tmp_path / name)).pixels, expected)
 
 
 @pytest.fixture
@@ -197,11 +196,9 @@ def test_an_error_of_bytes_names_no_temporary_file():
 
 @pytest.mark.parametrize("is_associated", [False, True])
 def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed(tmp_path, is_associated):
-    rng = np.random.default_rng(0)
-    codes = rng.integers(0, 256, (40, 30, 4), np.uint8)
+    codes = np.random.default_rng(0).integers(0, 256, (40, 30, 4), np.uint8)
     stored = np.minimum(codes, codes[..., 3:]) if is_associated else codes
-    path = write_image(tmp_path / "a.tif", stored, oiio__UnassociatedAlpha=int(not is_associated))
-    photo = read_photo(path)
+    photo = read_photo(write_image(tmp_path / "a.tif", stored, oiio__UnassociatedAlpha=int(not is_associated)))
     index = np.s_[3:30:4, ::5]
     before = photo[index]
     assert "pixels" not in vars(photo)

@@ -60,8 +60,7 @@ def test_a_step_has_the_sums_that_one_can_count():
     assert log_difference == pytest.approx(2 * LINES * np.log(52), rel=1e-5)
     assert signed_difference == pytest.approx(0, abs=1e-2)
     assert count == 4 * 226 * LINES
-    low_level = gradients[0, 0, 3, 0]
-    assert low_level == pytest.approx(LINES * 51)
+    assert gradients[0, 0, 3, 0] == pytest.approx(LINES * 51)
 
 
 def test_a_row_of_known_triples():

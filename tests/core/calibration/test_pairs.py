@@ -49,8 +49,7 @@ def measured(scene, true_response, tmp_path_factory):
     options = PairOptions(light=LIGHT, crop=0.02, distortion=0.02, vignetting=0.5)
     tints = np.exp2(np.random.default_rng(0).uniform(-0.7, 0.7, (8, 16, 3))).repeat(64, axis=0).repeat(64, axis=1)
     colored = scene * tints[: scene.shape[0], : scene.shape[1]]
-    paths = make_pair(tmp_path_factory.mktemp("pair"), colored, true_response, options)
-    return calibrate_pairs(paths)
+    return calibrate_pairs(make_pair(tmp_path_factory.mktemp("pair"), colored, true_response, options))
 
 
 def test_one_pair_gives_the_shape_of_the_response(measured, true_response):
@@ -63,8 +62,7 @@ def test_vignetting_and_the_matrix_are_found_and_no_local_tones(measured):
     assert abs(measured.local) < 0.03
     to_camera = CAMERAS["one"] @ XYZ * LIGHT
     true = np.linalg.inv(to_camera / to_camera.sum(axis=1, keepdims=True))
-    found = measured.matrix / measured.matrix.sum(axis=1, keepdims=True)
-    np.testing.assert_allclose(found, true, atol=0.2)
+    np.testing.assert_allclose(measured.matrix / measured.matrix.sum(axis=1, keepdims=True), true, atol=0.2)
 
 
 def test_several_shots_are_measured_together(pair, true_response):

@@ -40,8 +40,7 @@ def own(monkeypatch, tmp_path):
 
 def test_what_is_read_is_what_was_written(library):
     first = camera("a", make="SONY", model="ILCE-7M3", software="v2", iso=(100, 400))
-    path = library.save(first)
-    assert (path, library.get("a")) == (library.folder / "a.json", first)
+    assert (library.save(first), library.get("a")) == (library.folder / "a.json", first)
     assert first.basis == "measured from 6 exposures, ISO 100 to 400"
 
 

@@ -28,8 +28,7 @@ def test_heic_keeps_its_codes(heif, name):
     bits = 10 if "10" in name else 8
     assert values.bit_depth == bits
     assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
-    difference = np.abs(values.codes.astype(int) - colored_ramp(bits))
-    assert difference.max() <= FILES[name]
+    assert np.abs(values.codes.astype(int) - colored_ramp(bits)).max() <= FILES[name]
 
 
 def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):

@@ -110,8 +110,7 @@ def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
 
 def test_a_profile_that_libpng_rejects_is_read(tmp_path):
     """Its length is not a multiple of four."""
-    curve = b"curv" + struct.pack(">II", 0, 0)
-    linear = matrix_profile(REC709, curves=[curve] * 3)
+    linear = matrix_profile(REC709, curves=[b"curv" + struct.pack(">II", 0, 0)] * 3)
     content = struct.pack(">I", len(linear) + 1) + linear[4:] + b"\0"
     chunk = b"a\0\0" + zlib.compress(content)
     assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile", "ICC profile")

@@ -21,8 +21,7 @@ def test_the_device_favors_its_family():
 def test_what_was_developed_is_no_rendering_of_the_camera():
     assert largest(**OWN_CAMERA, software="darktable 3.4") == "developed"
     assert largest(**OWN_CAMERA, software="GIMP 2.8") == "developed"  # other programs save what was developed
-    factors = family_factors(origin(**OWN_CAMERA, software="darktable 3.4"))
-    assert factors["camera"] < 0.02
+    assert family_factors(origin(**OWN_CAMERA, software="darktable 3.4"))["camera"] < 0.02
 
 
 def test_the_shape_counts_only_where_no_device_is_known():
@@ -37,8 +36,7 @@ def test_the_shape_counts_only_where_no_device_is_known():
 @pytest.mark.parametrize("device", [Device.PHONE, Device.COMPACT, Device.CAMERA, Device.UNKNOWN])
 def test_a_stated_device_is_neutral_about_log_and_linear_pictures(device):
     """They are taken with cameras, too; of screenshots and renderings nobody says so."""
-    factors = FACTORS[f"stated {device or 'other'}"]
-    stated = dict(zip(Family, factors, strict=True))
+    stated = dict(zip(Family, FACTORS[f"stated {device or 'other'}"], strict=True))
     own = [Family.PHONE, Family.COMPACT, Family.CAMERA] if device is Device.UNKNOWN else [Family(device)]
     assert {stated[family] for family in (*own, Family.LINEAR, Family.LOG, Family.EDITED)} == {1}
     assert stated[Family.UNEXPLAINED] < 1

@@ -110,8 +110,7 @@ def test_limited_range_is_recognized_and_the_full_range_is_not(seed, bits):
     limited = quantized((16 + 219 * full.astype(float)) * 2 ** (bits - 8) / (2**bits - 1), bits)
     assert is_limited_range(Levels.from_pixels(limited))
     assert not is_limited_range(Levels.from_pixels(full))
-    recognition = recognize(Levels.from_pixels(limited), log_probability=0.0)
-    assert recognition.kind is Kind.LIMITED_RANGE
+    assert recognize(Levels.from_pixels(limited), log_probability=0.0).kind is Kind.LIMITED_RANGE
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 235), (16, 255), (30, 220)])

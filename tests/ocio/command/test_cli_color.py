@@ -100,8 +100,7 @@ class TestPrimaries:
             assert "chromaticities" not in found
 
     def test_what_is_given_outweighs_the_tag(self, tagged, linearized):
-        plate = tagged("a.tif", matrix_profile(ADOBE_RGB))
-        pixels, found = linearized(plate, "--primaries", "p3")
+        pixels, found = linearized(tagged("a.tif", matrix_profile(ADOBE_RGB)), "--primaries", "p3")
         np.testing.assert_allclose(pixels, to_space(LIGHT, "Display P3", "sRGB"), atol=5e-4)
         assert (found["crfnet:primaries"], found["crfnet:primariesSource"]) == ("Display P3", "as given")
 
@@ -137,8 +136,7 @@ class TestPrimaries:
         other = matrix_profile(REC709) if "Rec.709" in words else pq
         for number, icc in enumerate((matrix_profile(DISPLAY_P3), matrix_profile(DISPLAY_P3), other), 1):
             tagged(f"shot.{number}.tif", icc)
-        out = tmp_path / "l.%d.exr"
-        done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
+        done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", tmp_path / "l.%d.exr")
         assert (done.refusal, f"shot.3.tif: {words}" in done.err) == ("frames_failed", True)
         assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
 

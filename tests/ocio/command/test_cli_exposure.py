@@ -34,8 +34,7 @@ class TestExposure:
         assert found["stops"] == found["gray_stops"]
         header = attributes(read_exr(tmp_path / "out" / "plate_linear.exr")[1])
         assert header["crfnet:exposure"] == pytest.approx(found["stops"], abs=1e-5)
-        config = loaded(tmp_path / "out" / "config.ocio")
-        gray = converted(config, "CRF plate", "scene_linear", [[0.4614] * 3])
+        gray = converted(loaded(tmp_path / "out" / "config.ocio"), "CRF plate", "scene_linear", [[0.4614] * 3])
         np.testing.assert_allclose(gray, 0.18, atol=1e-5)
 
     def test_a_picked_gray_is_at_018(self, crfnet, plate, lut_file, tmp_path):

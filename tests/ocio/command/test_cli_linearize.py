@@ -14,8 +14,7 @@ def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
     assert done.code == 0
     assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
     assert all(words in done.out for words in ("\nPrior: camera; metadata: ", "4 frames", "Missing frames: 4."))
-    pixels = [read_image(out / f"l.{number:04d}.exr") for number in (1, 5)]
-    np.testing.assert_array_equal(*pixels)
+    np.testing.assert_array_equal(*[read_image(out / f"l.{number:04d}.exr") for number in (1, 5)])
 
 
 def test_goes_on_where_it_stopped(crfnet, look, frames):

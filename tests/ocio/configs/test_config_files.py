@@ -116,8 +116,7 @@ class TestLoading:
     )
     def test_a_file_that_is_no_config_or_not_utf8_or_too_large_or_multiplies_is_refused(self, tmp_path, content, code):
         """Aliases and variables before they do: nine levels of nine make a kilobyte take gigabytes."""
-        path = written(tmp_path / "config.ocio", content)
-        assert refusal_of(ConfigError, load_config, path).code == code
+        assert refusal_of(ConfigError, load_config, written(tmp_path / "config.ocio", content)).code == code
 
     def test_a_few_aliases_and_stars_in_texts_are_accepted(self, tmp_path):
         text = PORTABLE.replace("name: crfnet", "name: &title crfnet")

@@ -145,8 +145,7 @@ class TestBase:
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
         """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
         studio.write_text(studio.read_text().replace("$SHOW/", ""))
-        look = write_look(tmp_path / "look", [f"{name}.jpg"])
-        done = add(studio, tmp_path / "new", look)
+        done = add(studio, tmp_path / "new", write_look(tmp_path / "look", [f"{name}.jpg"]))
         assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
         result = loaded(done.path)
         assert_same(conversions(result), conversions(loaded(studio)))

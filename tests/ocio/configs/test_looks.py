@@ -24,8 +24,7 @@ def refusal(folder, root, *keys):
     """Return the code of the refusal of the sample's document, in which the entry at the keys is the last of them."""
     document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
     *path, key, value = keys
-    entry = functools.reduce(lambda part, name: part[name], path, document)
-    entry[key] = value
+    functools.reduce(lambda part, name: part[name], path, document)[key] = value
     return refusal_of(ConfigError, read_looks, written(folder / "plate.json", json.dumps(document))).code
 
 

@@ -63,8 +63,7 @@ class TestAdding:
     def test_a_config_without_rec709_goes_by_aces_interchange(self, folder):
         config = added(small_config(roles="aces_interchange: working"), SPACE)
         write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
-        written = loaded(folder / "config.ocio")
-        result = converted(written, "CRF plate01", "working", [[1, 1, 1], [1, 0, 0]])
+        result = converted(loaded(folder / "config.ocio"), "CRF plate01", "working", [[1, 1, 1], [1, 0, 0]])
         np.testing.assert_allclose(result, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
 
     def test_a_config_without_any_way_from_rec709_is_refused(self):

@@ -36,8 +36,7 @@ def test_every_host_finds_its_name_of_scene_linear(name):
     ],
 )
 def test_its_spaces_have_known_values(source, target, pixel, expected):
-    result = converted(portable_config([]), source, target, [pixel])
-    np.testing.assert_allclose(result, [expected], atol=3e-6)
+    np.testing.assert_allclose(converted(portable_config([]), source, target, [pixel]), [expected], atol=3e-6)
 
 
 @pytest.mark.parametrize("display", ["sRGB", "Rec.709"])
@@ -76,5 +75,4 @@ def test_names_that_are_taken_are_refused(name):
 
 
 def test_hosts_find_plates_and_files_by_their_category():
-    config = portable_config([])
-    assert all("file-io" in space.getCategories() for space in config.getColorSpaces())
+    assert all("file-io" in space.getCategories() for space in portable_config([]).getColorSpaces())

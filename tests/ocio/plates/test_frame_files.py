@@ -87,8 +87,7 @@ def test_the_first_part_with_colors_is_read(tmp_path, first):
 
 def test_an_exr_with_names_that_are_not_utf8(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.full((4, 4, 4), 0.5), ("R", "G", "B", "l_ft.Z"), multiView="l_ft_right")
-    texts = b"multiView\0stringvector\0\x0e\0\0\0\x0a\0\0\0"
-    changed(path, b"multiView\0string\0\x0a\0\0\0", texts)
+    changed(path, b"multiView\0string\0\x0a\0\0\0", b"multiView\0stringvector\0\x0e\0\0\0\x0a\0\0\0")
     header = read_frame(written(path, path.read_bytes().replace(b"l_ft", b"l\xe4ft")), is_encoded=True).header
     assert linear_header(header, channels=3, depth="half", attributes={}).nchannels == 3
 

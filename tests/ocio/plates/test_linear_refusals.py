@@ -147,5 +147,4 @@ def test_a_file_whose_end_is_lost_while_it_is_written_is_refused(tmp_path, monke
         return is_whole(path, header)
 
     monkeypatch.setattr(exr, "is_whole", lose)
-    plate = write_image(tmp_path / "a.png", SMALL)
-    assert refusal(plate, tmp_path / "a.exr", LUT) == "exr_not_written"
+    assert refusal(write_image(tmp_path / "a.png", SMALL), tmp_path / "a.exr", LUT) == "exr_not_written"
