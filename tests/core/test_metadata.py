@@ -47,8 +47,7 @@ def test_tables_of_the_ijg_library(tmp_path, quality, subsampling):
 
 def test_a_gray_jpeg_has_one_table(tmp_path):
     metadata = read(write_image(tmp_path / "a.jpg", np.zeros((16, 16, 1), np.uint8), Compression="jpeg:80"))
-    assert metadata.chroma_table == ()
-    assert file_origin(metadata).jpeg_quality == 80
+    assert (metadata.chroma_table, file_origin(metadata).jpeg_quality) == ((), 80)
 
 
 def test_a_jpeg_as_a_camera_writes_it(tmp_path):

@@ -19,8 +19,7 @@ def test_the_vector_holds_the_parts_of_every_cue():
     light = (light - light.min()) / np.ptp(light)
     smooth = np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
     found = window_statistics(smooth)
-    assert found.shape == (LENGTH,)
-    assert found.dtype == np.float32
+    assert (found.shape, found.dtype) == ((LENGTH,), np.float32)
     samples = Samples.from_window(smooth)
     for cue in CUES:
         sums, *terms = cue.count(samples) if cue.terms else (cue.count(samples),)
@@ -68,8 +67,7 @@ def test_a_row_of_known_triples():
     window = np.zeros((227, 227, 3), np.float32)
     window[:, 100], window[:, 101:] = 128 / 255, 1
     count, ratio = parts(window)["edges"][0]
-    assert count.sum() == pytest.approx(3 * 3 * LINES)
-    assert count[0, -1] == pytest.approx(3 * LINES)
+    assert (count.sum(), count[0, -1]) == (pytest.approx(3 * 3 * LINES), pytest.approx(3 * LINES))
     assert ratio[0, -1] == pytest.approx(0, abs=1)
     halves = count[0, 7:9].sum()
     assert halves == pytest.approx(3 * LINES, rel=1e-5)

@@ -26,8 +26,7 @@ def heif(root):
 def test_heic_keeps_its_codes(heif, name):
     values = read_codes(heif / name)
     bits = 10 if "10" in name else 8
-    assert values.bit_depth == bits
-    assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
+    assert (values.bit_depth, values.codes.dtype) == (bits, np.uint8 if bits == 8 else np.uint16)
     assert np.abs(values.codes.astype(int) - colored_ramp(bits)).max() <= FILES[name]
 
 
@@ -45,8 +44,7 @@ def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
     assert (values.metadata.make, values.metadata.model) == ("Apple", "iPhone 15")
     assert values.metadata.file_format == "HEIC"
     profile = bytes(values.header.getattribute("ICCProfile"))
-    assert profile[36:40] == b"acsp"
-    assert len(profile) == struct.unpack(">I", profile[:4])[0]
+    assert (profile[36:40], len(profile)) == (b"acsp", struct.unpack(">I", profile[:4])[0])
 
 
 @pytest.mark.parametrize(("code", "name"), [(16, "PQ"), (18, "HLG"), (8, "linear"), (13, "")])

@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from contextlib import nullcontext
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import NOT_TRUSTED
@@ -19,8 +18,7 @@ from crfnet.errors import PlateError
 from crfnet.pipeline import batch, each, run, workers
 from crfnet.pipeline.records import PhotographRecord, RecordFile
 from tests.helpers.folders import listed, tree
-from tests.helpers.footage import log_picture
-from tests.helpers.images import write_image
+from tests.helpers.footage import log_picture, write_picture
 from tests.helpers.processes import start_interruptible
 from tests.helpers.records import records_in
 from tests.helpers.refusals import refusal_of, refused
@@ -122,8 +120,7 @@ def test_a_run_of_other_options_that_begins_at_the_same_time_replaces_nothing(es
 
 def test_strict_ends_with_3_if_any_is_not_to_be_trusted(estimate, photographs):
     assert estimate(photographs, *QUICK, "--strict").code == 0
-    footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
-    write_image(photographs / "log.png", footage)
+    write_picture(photographs / "log.png", log_picture("Sony S-Log3"))
     for _ in range(2):
         done = estimate(photographs, *QUICK, "--strict")
         assert (done.code, done.err) == (NOT_TRUSTED, "")

@@ -34,8 +34,7 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
     assert found["photographs"] == [
         {"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8, "has_gain_map": False}
     ]
-    assert len(found["response"]["brightness"]) == 1024
-    assert len(found["windows"]) == 10
+    assert (len(found["response"]["brightness"]), len(found["windows"])) == (1024, 10)
     assert found["files"]["sheet"] is None
     assert found["color_space"] == "CRF plate"
 

@@ -61,8 +61,7 @@ def test_a_signal_leaves_nothing_and_no_traceback(arguments, tmp_path, name):
         process.send_signal(number)
         process.send_signal(number)
         _, err = process.communicate(timeout=20)
-    assert process.returncode == 128 + number
-    assert err == "crfnet: interrupted\n"
+    assert (process.returncode, err) == (128 + number, "crfnet: interrupted\n")
     assert not (tmp_path / "out").exists()
 
 

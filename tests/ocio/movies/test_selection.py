@@ -53,8 +53,7 @@ def test_a_black_movie_gives_its_frames_all_the_same(tmp_path):
 def test_frames_have_names_bits_and_metadata(tmp_path):
     path = write_movie(tmp_path / "a.mp4", codec="libx265", form="yuv420p10le")
     number, photo = next(iter(chosen_photos(MovieFrames.find(path))))
-    assert photo.path.name == f"a.mp4 frame {number}"
-    assert photo.bit_depth == 10
+    assert (photo.path.name, photo.bit_depth) == (f"a.mp4 frame {number}", 10)
     assert (photo.metadata.width, photo.metadata.height) == (128, 96)
     codes = photo.pixels * 1023
     assert abs(codes - codes.round()).max() < 1e-3

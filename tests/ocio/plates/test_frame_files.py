@@ -68,20 +68,14 @@ def test_an_exr_whose_tag_does_not_say_that_it_is_encoded_is_refused(tmp_path, r
 
 
 @pytest.mark.parametrize("first", [("Z",), ("Y",), ("X", "Y", "Z")])
-def test_the_first_part_with_colors_is_read(tmp_path, first):
+def test_the_first_part_with_colors_is_read(tmp_path, oiiotool, first):
     """Depth, a mask or normals may come before it."""
-    parts = [oiio.ImageSpec(4, 3, len(names), oiio.FLOAT) for names in (first, "RGB")]
-    for part, names in zip(parts, (first, "RGB"), strict=True):
-        part.channelnames = tuple(names)
-        part.attribute("oiio:subimagename", names[0])
-    path = tmp_path / "a.exr"
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), tuple(parts))
-    assert output.write_image(np.full((3, 4, len(first)), 7, np.float32))
-    assert output.open(str(path), parts[1], "AppendSubimage")
     values = np.random.default_rng(0).random((3, 4, 3), np.float32)
-    assert output.write_image(values)
-    output.close()
+    parts = [write_exr(tmp_path / "first.exr", np.full((3, 4, len(first)), 7), first)]
+    parts.append(write_exr(tmp_path / "colors.exr", values, ("R", "G", "B")))
+    path = tmp_path / "a.exr"
+    oiiotool(*parts, "--siappend", "-o", path)
+    assert oiio.ImageBuf(str(path)).nsubimages == 2
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, values)
 
 

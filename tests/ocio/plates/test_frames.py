@@ -56,8 +56,7 @@ def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     touch(tmp_path, "p.0010.png", "p.0009.png", "p.0012.png", "p.0015.png")
     sequence = find_frames(tmp_path / pattern)
     assert names(sequence) == ["p.0009.png", "p.0010.png", "p.0012.png", "p.0015.png"]
-    assert sequence.numbers == (9, 10, 12, 15)
-    assert sequence.missing == (11, 13, 14)
+    assert (sequence.numbers, sequence.missing) == ((9, 10, 12, 15), (11, 13, 14))
 
 
 def test_other_files_are_left_alone(tmp_path):
@@ -70,8 +69,7 @@ def test_other_files_are_left_alone(tmp_path):
 def test_only_the_chosen_frames_are_found(tmp_path):
     touch(tmp_path, *(f"p.{number:04d}.png" for number in (1, 2, 3, 5, 8)))
     sequence = find_frames(tmp_path / "p.####.png", "2-6,20")
-    assert sequence.numbers == (2, 3, 5)
-    assert sequence.missing == (4, 6, 20)
+    assert (sequence.numbers, sequence.missing) == ((2, 3, 5), (4, 6, 20))
     assert find_frames(tmp_path / "p.####.png", [8, 1, 1]).numbers == (1, 8)
 
 
