@@ -93,12 +93,8 @@ DAMAGES: dict[str, tuple[object, ...]] = {
     "weights": (None, 1, [], [0.0] * 10, [[0.0] * 11], *([each] * 11 for each in (10**400, math.nan, "1", True))),
     "windows": (3, {}, [3]),
     **dict.fromkeys(("windows.0.photo", "windows.0.x", "windows.0.weights"), (-1, 1.5, "1", None)),
-    **{
-        "windows.0.filled": (257, -1),
-        "windows.0.step": (0,),
-        "windows.0.kept": (1,),
-        "windows.0.expected_error": (-1,),
-    },
+    **{"windows.0.filled": (257, -1), "windows.0.step": (0,)},
+    **{"windows.0.kept": (1,), "windows.0.expected_error": (-1,)},
     **dict.fromkeys(("response.brightness", "response.upper"), (None, [0.5] * 7, [2.0] * 1024, ["0.5"] * 1024)),
 }
 

@@ -17,17 +17,9 @@ def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), c
     place = count if is_big else "<I"
     begin = len(head) + struct.calcsize(place)
     tags = [
-        (256, 4, width),
-        (257, 4, height),
-        (258, 3, bits),
-        (259, 3, 1),
-        (262, 3, photometric),
-        (273, 4, begin),
-        (277, 3, samples),
-        (278, 4, height),
-        (279, 4, min(width * height * samples * bits // 8, 2**32 - 1)),
-        (339, 3, kind),
-        *extra,
+        *((256, 4, width), (257, 4, height), (258, 3, bits), (259, 3, 1), (262, 3, photometric), (273, 4, begin)),
+        *((277, 3, samples), (278, 4, height), (279, 4, min(width * height * samples * bits // 8, 2**32 - 1))),
+        *((339, 3, kind), *extra),
     ]
     directory = b"".join(struct.pack(entry, tag, form, 1, value) for tag, form, value in sorted(tags))
     start = struct.pack(place, begin + len(content))
