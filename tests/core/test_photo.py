@@ -150,8 +150,7 @@ def test_a_damaged_ultra_hdr_photograph_is_named_itself(ultra_hdr):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
 def test_memory_is_the_codes_alone(tmp_path):
-    path = write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
-    size, is_read = memory_of_reading(path)
+    size, is_read = memory_of_reading(write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8)))
     assert is_read
     assert size < 1.5 * 12e6 * 3 / 1024, "kB"
 
@@ -165,8 +164,7 @@ def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
     path = write_image(tmp_path / "a.png", CODES16)
     expected = read_photo(path)
     with path.open("rb") as file:
-        sources = [path.read_bytes(), io.BytesIO(path.read_bytes()), file]
-        photos = [read_photo(source) for source in sources]
+        photos = [read_photo(source) for source in [path.read_bytes(), io.BytesIO(path.read_bytes()), file]]
     for photo in photos:
         np.testing.assert_array_equal(photo.pixels, expected.pixels)
         assert photo.metadata == expected.metadata

@@ -69,8 +69,7 @@ class TestExport:
         return self.planned(tmp_path / "look")
 
     def planned(self, folder, *, overwrite=False):
-        outputs = OutputOptions(has_sheet=False, has_linear=False)
-        files = OutputFiles.named(folder, [Path("plate.png")], outputs)
+        files = OutputFiles.named(folder, [Path("plate.png")], OutputOptions(has_sheet=False, has_linear=False))
         space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
         return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), space)
 

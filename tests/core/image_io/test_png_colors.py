@@ -63,8 +63,7 @@ def test_chunks_are_believed_by_their_order(tmp_path):
 
 
 def test_an_encoding_for_displays_is_an_answer_too(tmp_path):
-    linear = matrix_profile(ADOBE_RGB, curves=[b"curv" + bytes(8)] * 3)
-    chunk = b"a\0\0" + zlib.compress(linear)
+    chunk = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB, curves=[b"curv" + bytes(8)] * 3))
     assert tags(tmp_path / "a.png", cICP=bytes([1, 13, 0, 1]), iCCP=chunk) == ColorTags(REC709, "", "CICP", "CICP")
 
 

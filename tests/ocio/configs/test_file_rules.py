@@ -124,8 +124,7 @@ def test_files_of_several_plates_follow_the_rules_of_the_base(tmp_path):
     base = portable_config([])
     (rules := base.getFileRules()).insertRule(0, "by shot", "ACEScct", ".*sh010.*")
     base.setFileRules(rules)
-    path = written(tmp_path / "base.ocio", base.serialize())
-    one = add(path, tmp_path / "one", write_look(tmp_path / "a"))
+    one = add(written(tmp_path / "base.ocio", base.serialize()), tmp_path / "one", write_look(tmp_path / "a"))
     result = loaded(add(one.path, tmp_path / "two", write_look(tmp_path / "b")).path)
     assert [space_of(result, f"/{shot}/plate01.jpg") for shot in ("sh010", "sh020")] == ["ACEScct", "sRGB"]
 

@@ -119,8 +119,7 @@ class TestFfmpeg:
         lut, most = inverse_response_lut(true_response), 2**bits - 1
         write_lut(tmp_path / "a.cube", lut)
         codes = np.repeat(np.linspace(0, most, 4096).astype(kind)[:, None], 3, axis=1)
-        expected = lut.apply(codes / most) * most
-        error = self.through_ffmpeg(tmp_path / "a.cube", codes, pixel_format) - expected
+        error = self.through_ffmpeg(tmp_path / "a.cube", codes, pixel_format) - lut.apply(codes / most) * most
         assert error.max() < 0.05
         assert error.min() > -1.01
 

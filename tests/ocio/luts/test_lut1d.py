@@ -16,8 +16,7 @@ EXTENDED = (-0.125, 1.125)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 def test_apply_interpolates_clamps_and_takes_nan_for_the_first_entry(kind):
     lut = Lut1D([0.0, 0.25, 1.0])
-    inputs = np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind)
-    result = lut.apply(inputs)
+    result = lut.apply(np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind))
     assert (result.dtype, result.tolist()) == (kind, [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0])
 
 
