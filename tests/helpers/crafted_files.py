@@ -1,4 +1,4 @@
-"""PNG, TIFF and JPEG files made by hand, whose headers say what no image writer would."""
+"""Image files made by hand, whose headers say what no image writer would."""
 
 import struct
 import zlib
@@ -36,6 +36,12 @@ def png(width, height, rows=b"\0", *, chunks=b""):
 def png_chunk(name, content):
     """Return a chunk of a PNG: its length, name, content and checksum."""
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+
+def box(kind, *parts):
+    """Return a box of HEIF, JPEG 2000 or JPEG XL: its length, kind and content."""
+    content = b"".join(parts)
+    return struct.pack(">I", 8 + len(content)) + kind + content
 
 
 def bmp(width, height, content, *, bits=24, coding=0, size=40, fields=b"", palette=b""):

@@ -9,7 +9,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.jxl_files import JxlHeader, with_jxl_boxes
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.crafted_files import xmp_packet
+from tests.helpers.crafted_files import box, xmp_packet
 from tests.helpers.folders import written
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refusal_of, refused
@@ -87,8 +87,7 @@ def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
     exif[0x010F], exif[0x0112] = "Maker", 6
     xmp = xmp_packet(b'xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="Adobe Photoshop 25.0"')
     content = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100").read_bytes()
-    boxes = {b"Exif": bytes(4) + exif.tobytes(), b"xml ": xmp}
-    added = b"".join(struct.pack(">I", 8 + len(box)) + kind + box for kind, box in boxes.items())
+    added = box(b"Exif", bytes(4), exif.tobytes()) + box(b"xml ", xmp)
     at = content.index(b"jxlp") - 4
     values = read_codes(written(tmp_path / "a.jxl", content[:at] + added + content[at:]))
     np.testing.assert_array_equal(values.codes, codes)

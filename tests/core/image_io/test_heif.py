@@ -9,6 +9,7 @@ from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.crafted_files import box
 from tests.helpers.folders import changed, written
 from tests.helpers.refusals import refusal_of, refused
 
@@ -59,8 +60,7 @@ def with_gain_map(content, mark):
     """Return a HEIC whose box `meta` lies at its end, so that offsets hold, and contains one more box with a mark."""
     at = content.index(b"meta")
     size = int.from_bytes(content[at - 4 : at])
-    box = struct.pack(">I", 8 + len(mark)) + b"free" + mark
-    meta = struct.pack(">I", size + len(box)) + content[at : at - 4 + size] + box
+    meta = box(content[at : at + 4], content[at + 4 : at - 4 + size], box(b"free", mark))
     return content[:at] + b"free" + content[at + 4 :] + meta
 
 

@@ -6,13 +6,9 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.image_io.heif_items import decoded_pixels
 from crfnet_core.photograph.image_io.iso_boxes import MOST_META, find_box
+from tests.helpers.crafted_files import box
 from tests.helpers.folders import written
 from tests.helpers.refusals import refusal_of
-
-
-def box(kind, *parts):
-    content = b"".join(parts)
-    return struct.pack(">I", 8 + len(content)) + kind + content
 
 
 def full(kind, *parts):

@@ -10,15 +10,12 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.crafted_files import box
 from tests.helpers.folders import written
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refusal_of
 
 ALPHA = np.full((48, 64, 1), 128, np.uint8)
-
-
-def box(name, content):
-    return struct.pack(">I4s", 8 + len(content), name) + content
 
 
 #: A palette of black alone, and the three channels that it makes of the first component.

@@ -10,28 +10,29 @@ from crfnet.movies.frames import MovieFrames
 from crfnet.movies.stream import check_progressive, read_stream
 from crfnet_core.colorimetry import REC2020
 from crfnet_core.photograph.metadata import file_origin
+from tests.helpers.crafted_files import box
 from tests.helpers.folders import changed
 from tests.helpers.images import read_image, write_image
 from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 from tests.helpers.refusals import refusal_of
 
 
-def with_box(path, box):
+def with_box(path, added):
     """Insert a box in front of the decoder configuration of a HEVC movie whose header stands at the end."""
     content = path.read_bytes()
     at = content.index(b"hvcC") - 4
     assert content.index(b"mdat") < at
-    content = bytearray(content[:at] + box + content[at:])
+    content = bytearray(content[:at] + added + content[at:])
     for name in (b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd", b"hev1"):
         place = content.index(name) - 4
-        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(box))
+        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(added))
     path.write_bytes(content)
 
 
 def test_dolby_vision_of_profile_5_is_refused(tmp_path):
     movies = [write_movie(tmp_path / f"{profile}.mp4", codec="libx265") for profile in (5, 8)]
     for path in movies:
-        with_box(path, struct.pack(">I4s", 32, b"dvcC") + bytes([1, 0, int(path.stem) << 1, 13, 0]) + bytes(19))
+        with_box(path, box(b"dvcC", bytes([1, 0, int(path.stem) << 1, 13, 0]), bytes(19)))
     assert refusal_of(PlateError, read_stream, movies[0]).code == "dolby_vision"
     assert read_stream(movies[1]).codec == "HEVC"
 
