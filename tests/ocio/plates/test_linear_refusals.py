@@ -43,16 +43,15 @@ def test_a_frame_tagged_linear_is_refused(tmp_path, out, number, words):
 
 @pytest.mark.parametrize(
     ("target", "code"),
-    [("out/a.exr", "no_placeholder"), ("out/a.%04d.png", "not_exr"), ("out/a.##.##.exr", "several_placeholders")],
+    [
+        *(("out/a.exr", "no_placeholder"), ("out/a.%04d.png", "not_exr"), ("out/a.##.##.exr", "several_placeholders")),
+        ("absent/a.#.exr", "folder_absent"),
+    ],
 )
 @pytest.mark.parametrize("numbers", [(1, 2), (1,)])
 def test_output_names_that_cannot_be_are_refused(tmp_path, out, numbers, target, code):
     assert refusal(write_sequence(tmp_path, numbers), tmp_path / target, LUT) == code
     assert tree(out) == {}
-
-
-def test_an_absent_folder_is_refused(tmp_path):
-    assert refusal(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT) == "folder_absent"
 
 
 def write_over(path, *, pixels=slice(None), names="RGB", compression="zips"):
