@@ -129,7 +129,7 @@ GRID = np.linspace(0, 1, 4081)
 
 @pytest.mark.parametrize("domain", [(0.0, 1.0), (-0.125, 1.125)])
 @pytest.mark.parametrize("length", [4081, 16321])
-def test_it_returns_the_response(true_response, length, domain):
+def test_a_lut_gives_its_response_back(true_response, length, domain):
     result = response_of_lut(inverse_response_lut(true_response, length=length, domain=domain))
     assert np.abs(result.brightness - true_response.brightness).max() < 2e-4
     assert np.abs(result.inverse(GRID) - true_response.inverse(GRID)).max() < 5e-5
