@@ -42,6 +42,12 @@ class CommandResult:
     problem: str
 
     @property
+    def printed(self) -> str:
+        """The text that a command printed which succeeded without a word on stderr."""
+        assert (self.code, self.err) == (0, "")
+        return self.out
+
+    @property
     def refusal(self) -> str:
         """The code of the error for which the command ended with exit status 2 and one line."""
         assert (self.code, self.err.count("\n"), self.err[:15]) == (2, 1, "crfnet: error: ")

@@ -33,7 +33,8 @@ from tests.helpers.color_profiles import (
     sampled_curve,
     write_tagged,
 )
-from tests.helpers.crafted_files import with_jpeg_segment
+from tests.helpers.crafted_files import bmp, with_jpeg_segment
+from tests.helpers.folders import written
 from tests.helpers.images import write_image
 
 colour = pytest.importorskip("colour")
@@ -193,11 +194,9 @@ class TestFiles:
 
     def test_the_profile_of_a_bmp_is_read(self, tmp_path):
         icc = matrix_profile(DISPLAY_P3)
-        header = struct.pack("<IiiHHIIiiII", 124, 2, 2, 1, 24, 0, 16, 0, 0, 0, 0).ljust(56, b"\0") + b"DEBM"
-        header = header.ljust(112, b"\0") + struct.pack("<III", 140, len(icc), 0)
-        start = struct.pack("<2sIHHI", b"BM", 154 + len(icc), 0, 0, 138)
-        (tmp_path / "a.bmp").write_bytes(start + header + bytes(16) + icc)
-        assert self.tags(tmp_path / "a.bmp") == ColorTags(DISPLAY_P3, "", "ICC profile", "ICC profile")
+        fields = bytes(16) + b"DEBM" + bytes(52) + struct.pack("<III", 140, len(icc), 0)
+        path = written(tmp_path / "a.bmp", bmp(2, 2, bytes(16), size=124, fields=fields) + icc)
+        assert self.tags(path) == ColorTags(DISPLAY_P3, "", "ICC profile", "ICC profile")
 
     def test_a_profile_of_tables_is_unknown_whatever_exif_says(self, tmp_path):
         icc = profile({"A2B0": b"mft2".ljust(52, b"\0")})
@@ -205,8 +204,8 @@ class TestFiles:
 
     def test_a_profile_of_which_a_segment_is_absent_is_damaged(self, tmp_path):
         path = write_image(tmp_path / "a.jpg", GRAY)
-        path.write_bytes(with_jpeg_segment(path.read_bytes(), 0xE2, b"ICC_PROFILE\0\1\2" + matrix_profile(DISPLAY_P3)))
-        assert self.tags(path) == ColorTags(source=DAMAGED)
+        content = with_jpeg_segment(path.read_bytes(), 0xE2, b"ICC_PROFILE\0\1\2" + matrix_profile(DISPLAY_P3))
+        assert self.tags(written(path, content)) == ColorTags(source=DAMAGED)
 
     @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
     def test_exif_is_read(self, tmp_path, space, primaries):

@@ -7,20 +7,14 @@ import pytest
 
 import crfnet
 import crfnet_core
+from crfnet_core import AnalysisOptions, EmorBasis, Photo, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.analysis import cut_photograph
-from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
 from crfnet_core.network.inference import Predictions
 from crfnet_core.network.pooling import agreeing, robust_mean
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Evidence, Family, Posterior, Verdict
 from crfnet_core.posterior.factors import family_factors
-from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 from tests.helpers.refusals import refused
@@ -83,8 +77,7 @@ def test_a_network_without_pooling_is_pooled_by_the_rule(bank):
 def test_a_network_that_pools_has_the_last_word(bank):
     windows = [evidence_for(row) for row in bank.weights[[5, 5, 1, 5, 5]]]
     estimate = asked(photo(), FakeNetwork(windows, pooled=evidence_for(bank.weights[2], precision=300)))
-    true = bank.brightness[2]
-    assert np.linalg.norm(estimate.curve.brightness - true) < 0.1
+    assert np.linalg.norm(estimate.curve.brightness - bank.brightness[2]) < 0.1
     assert [window.kept for window in estimate.windows] == [True, True, False, True, True]
 
 
@@ -130,8 +123,7 @@ def test_the_estimate_says_what_the_posterior_says(bank):
     assert estimate.families == expected.families
     assert estimate.verdict is Verdict.from_posterior(expected)
     np.testing.assert_array_equal(estimate.band, expected.band())
-    basis = EmorBasis.load()
-    np.testing.assert_array_equal(estimate.weights, basis.project(expected.curve.brightness))
+    np.testing.assert_array_equal(estimate.weights, EmorBasis.load().project(expected.curve.brightness))
     assert (estimate.prior, estimate.model) == ("even", "fake 000000000000")
 
 

@@ -13,8 +13,7 @@ from tests.helpers.refusals import refused
 
 def test_a_file_takes_its_name_when_it_is_whole(tmp_path):
     with atomic_write(tmp_path / "plate.cube") as temporary:
-        assert temporary.parent.parent == tmp_path
-        assert temporary.name == "plate.cube"
+        assert (temporary.parent.parent, temporary.name) == (tmp_path, "plate.cube")
         temporary.write_text("whole")
         assert not (tmp_path / "plate.cube").exists()
     assert (tmp_path / "plate.cube").read_text() == "whole"

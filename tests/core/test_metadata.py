@@ -13,8 +13,9 @@ from crfnet_core.photograph.metadata.jpeg import (
 )
 from crfnet_core.photograph.metadata.origin import ADOBE
 from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
+from tests.helpers.folders import written
 from tests.helpers.images import write_image
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 EXIF: dict[str, object] = {"Make": "Canon", "Model": "Canon EOS 20D", "Software": "Adobe Photoshop CS6"}
 EXIF |= {"Exif__PhotographicSensitivity": 200, "Exif__PixelXDimension": 3504, "Exif__PixelYDimension": 2336}
@@ -34,11 +35,10 @@ def test_exif_is_read(tmp_path, name):
     assert metadata.file_format == {"a.jpg": "JPEG", "a.png": "PNG", "a.tif": "TIFF"}[name]
 
 
-@pytest.mark.parametrize(("quality", "subsampling"), [(50, "4:4:4"), (75, "4:2:2"), (92, "4:2:0")])
+@pytest.mark.parametrize(("quality", "subsampling"), [(1, "4:4:4"), (25, "4:2:2"), (50, "4:4:4"), (100, "4:2:0")])
 def test_tables_of_the_ijg_library(tmp_path, quality, subsampling):
-    path = tmp_path / "a.jpg"
-    jpeg(path, Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)
-    metadata = read(path)
+    jpeg(tmp_path / "a.jpg", Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)
+    metadata = read(tmp_path / "a.jpg")
     assert metadata.luma_table == scaled_table(ANNEX_K_LUMA, quality)
     assert metadata.chroma_table == scaled_table(ANNEX_K_CHROMA, quality)
     assert metadata.has_jfif
@@ -47,8 +47,7 @@ def test_tables_of_the_ijg_library(tmp_path, quality, subsampling):
 
 def test_a_gray_jpeg_has_one_table(tmp_path):
     metadata = read(write_image(tmp_path / "a.jpg", np.zeros((16, 16, 1), np.uint8), Compression="jpeg:80"))
-    assert metadata.chroma_table == ()
-    assert file_origin(metadata).jpeg_quality == 80
+    assert (metadata.chroma_table, file_origin(metadata).jpeg_quality) == ((), 80)
 
 
 def test_a_jpeg_as_a_camera_writes_it(tmp_path):
@@ -67,8 +66,8 @@ def test_a_jpeg_as_a_camera_writes_it(tmp_path):
 
 def test_adobes_segment_names_an_editor_where_no_text_does(tmp_path):
     content = jpeg(tmp_path / "a.jpg")
-    (tmp_path / "a.jpg").write_bytes(with_jpeg_segment(content, 0xEE, b"Adobe\0\x64\0\0\0\0\x01"))
-    assert file_origin(read(tmp_path / "a.jpg")).editor == ADOBE
+    path = written(tmp_path / "a.jpg", with_jpeg_segment(content, 0xEE, b"Adobe\0\x64\0\0\0\0\x01"))
+    assert file_origin(read(path)).editor == ADOBE
 
 
 @pytest.mark.parametrize("changed", ["/", "/metadata"])
@@ -81,21 +80,12 @@ def test_xmp_names_programs_that_saved_pixels_and_the_raw_file(tmp_path, changed
         b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)" stEvt:changed="%b"/>'
         b"</rdf:Seq></xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
     ) % changed.encode()
-    path = tmp_path / "a.jpg"
-    path.write_bytes(with_jpeg_segment(jpeg(path, Software="Ver.1.0"), 0xE1, xmp))
-    metadata = read(path)
+    content = jpeg(tmp_path / "a.jpg", Software="Ver.1.0")
+    metadata = read(written(tmp_path / "a.jpg", with_jpeg_segment(content, 0xE1, xmp)))
     programs = () if changed == "/metadata" else ("Adobe Photoshop CC (Macintosh)",)
     assert (metadata.history, metadata.raw_file) == (programs, "_DSC0001.NEF")
     assert file_origin(metadata).editor == (programs or (ADOBE,))[0]
     assert file_origin(metadata).is_developed
-
-
-def test_names_are_shown_without_control_characters(tmp_path):
-    content = jpeg(tmp_path / "a.jpg", Make="Canon", Model="EOS1\n\x1b[2J20D", Software="x" * 1000)
-    (tmp_path / "a.jpg").write_bytes(content.replace(b"EOS1", b"EOS\xff"))
-    metadata = read(tmp_path / "a.jpg")
-    assert metadata.model == "EOS? ?[2J20D"
-    assert len(metadata.software) == 200
 
 
 @pytest.mark.parametrize(
@@ -106,13 +96,9 @@ def test_damaged_segments_leave_fields_empty(content):
     assert (header.luma_table, header.chroma_table) == ((), ())
 
 
-def test_tables_of_the_ijg_library_have_its_quality_and_others_have_none():
-    for quality in (1, 25, 50, 75, 95, 100):
-        luma, chroma = scaled_table(ANNEX_K_LUMA, quality), scaled_table(ANNEX_K_CHROMA, quality)
-        assert ijg_quality(luma, chroma) == ijg_quality(luma) == quality
-    assert ijg_quality(()) is None
-    assert ijg_quality(OWN_TABLE) is None
-    assert ijg_quality(scaled_table(ANNEX_K_LUMA, 90), scaled_table(ANNEX_K_CHROMA, 80)) is None
+def test_other_tables_have_no_quality_of_the_ijg_library():
+    mixed = scaled_table(ANNEX_K_LUMA, 90), scaled_table(ANNEX_K_CHROMA, 80)
+    assert [ijg_quality(*tables) for tables in ([()], [OWN_TABLE], mixed)] == [None] * 3
 
 
 def test_metadata_alone_is_read_without_the_pixels(tmp_path):
@@ -120,5 +106,4 @@ def test_metadata_alone_is_read_without_the_pixels(tmp_path):
     path = write_image(tmp_path / "a.png", noise, Make="Canon")
     path.write_bytes(path.read_bytes()[:-4000])
     assert read_metadata(path).make == "Canon"
-    with refused(PhotoError, "damaged"):
-        read_photo(path)
+    assert refusal_of(PhotoError, read_photo, path).code == "damaged"

@@ -11,7 +11,7 @@ from crfnet_core.errors import CRFNetError, ModelError
 from crfnet_core.network import DEFAULT_MODEL, MODELS, ResponseNetwork, inference, model_folder
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.statistics import window_statistics
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 #: The evidence of all windows together in the golden predictions.
 POOLED = ("pooled_location", "pooled_factor", "pooled_log_odds")
@@ -247,5 +247,4 @@ def test_folders_are_paths_and_threads_are_whole_numbers_and_not_negative():
     with refused(CRFNetError, "argument_kind", name="folder"):
         ResponseNetwork.load(5)
     for threads in (-1, 1.5, "2", True):
-        with refused(ModelError, "negative_threads"):
-            ResponseNetwork.load(threads=threads)
+        assert refusal_of(ModelError, ResponseNetwork.load, threads=threads).code == "negative_threads"

@@ -6,12 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core import AnalysisOptions, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.facade import estimate
-from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.response.curve import ResponseCurve
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,10 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.crafted_files import png, png_chunk
+from tests.helpers.folders import written
 from tests.helpers.images import read_image, write_image
 from tests.helpers.memory import memory_of_reading
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 CODES8 = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 CODES16 = np.array([[[0, 1, 2], [32767, 32768, 32769]], [[65533, 65534, 65535], [100, 200, 300]]], np.uint16)
@@ -25,8 +26,6 @@ FORMATS = {
     **{"a.png": "PNG", "a.tif": "TIFF", "a.webp": "WebP", "a.dpx": "DPX", "a.bmp": "BMP"},
     **{"a.jp2": "JPEG 2000", "a.j2k": "JPEG 2000", "a.jxl": "JPEG XL"},
 }
-
-
 DEEP = ("a.png", "a.tif", "a.dpx", "a.jxl", "a.jp2")
 
 
@@ -56,9 +55,8 @@ def test_10_and_12_bit_codes_over_their_own_largest(tmp_path, name, bits):
 
 def test_no_profile_or_gamma_is_applied(tmp_path):
     rows = b"".join(b"\0" + bytes(row.ravel().tolist()) for row in CODES8)
-    path = tmp_path / "a.png"
-    path.write_bytes(png(2, 2, rows, chunks=png_chunk(b"gAMA", struct.pack(">I", 100000))))
-    np.testing.assert_array_equal(read_codes(path).codes, CODES8)
+    content = png(2, 2, rows, chunks=png_chunk(b"gAMA", struct.pack(">I", 100000)))
+    np.testing.assert_array_equal(read_codes(written(tmp_path / "a.png", content)).codes, CODES8)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg", "a.webp", "a.avif"])
@@ -122,8 +120,7 @@ def test_associated_alpha_is_divided_out(tmp_path):
 def test_the_content_counts_not_the_suffix(tmp_path, content, name):
     write_image(tmp_path / content, CODES8)
     expected = read_photo(tmp_path / content).pixels
-    path = (tmp_path / content).rename(tmp_path / name)
-    np.testing.assert_array_equal(read_photo(path).pixels, expected)
+    np.testing.assert_array_equal(read_photo((tmp_path / content).rename(tmp_path / name)).pixels, expected)
 
 
 @pytest.fixture
@@ -137,8 +134,7 @@ def ultra_hdr(tmp_path):
 
 def test_ultra_hdr_gives_the_standard_image(tmp_path, ultra_hdr):
     whole = ultra_hdr.read_bytes()
-    plain = tmp_path / "plain.jpg"
-    plain.write_bytes(whole[: whole.index(b"\xff\xd9", whole.index(b"\xff\xda")) + 2])
+    plain = written(tmp_path / "plain.jpg", whole[: whole.index(b"\xff\xd9", whole.index(b"\xff\xda")) + 2])
     photo = read_photo(ultra_hdr)
     assert (photo.bit_depth, photo.path, photo.metadata.has_gain_map) == (8, ultra_hdr, True)
     np.testing.assert_array_equal(photo.pixels, read_image(plain, kind="uint8") / np.float32(255))
@@ -154,24 +150,21 @@ def test_a_damaged_ultra_hdr_photograph_is_named_itself(ultra_hdr):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
 def test_memory_is_the_codes_alone(tmp_path):
-    path = write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
-    size, is_read = memory_of_reading(path)
+    size, is_read = memory_of_reading(write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8)))
     assert is_read
     assert size < 1.5 * 12e6 * 3 / 1024, "kB"
 
 
 @pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text"), io.TextIOWrapper(io.BytesIO(b"\xff\xd8"))])
 def test_other_sources_are_refused(source):
-    with refused(PhotoError, "photograph_source"):
-        read_photo(source)
+    assert refusal_of(PhotoError, read_photo, source).code == "photograph_source"
 
 
 def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
     path = write_image(tmp_path / "a.png", CODES16)
     expected = read_photo(path)
     with path.open("rb") as file:
-        sources = [path.read_bytes(), io.BytesIO(path.read_bytes()), file]
-        photos = [read_photo(source) for source in sources]
+        photos = [read_photo(source) for source in [path.read_bytes(), io.BytesIO(path.read_bytes()), file]]
     for photo in photos:
         np.testing.assert_array_equal(photo.pixels, expected.pixels)
         assert photo.metadata == expected.metadata
@@ -191,8 +184,7 @@ def test_a_file_that_cannot_be_read_is_refused(problem):
         def read(self, size=-1):
             raise problem
 
-    with refused(PhotoError, "cannot_open_photograph"):
-        read_photo(Broken())
+    assert refusal_of(PhotoError, read_photo, Broken()).code == "cannot_open_photograph"
 
 
 def test_an_error_of_bytes_names_no_temporary_file():
@@ -202,11 +194,9 @@ def test_an_error_of_bytes_names_no_temporary_file():
 
 @pytest.mark.parametrize("is_associated", [False, True])
 def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed(tmp_path, is_associated):
-    rng = np.random.default_rng(0)
-    codes = rng.integers(0, 256, (40, 30, 4), np.uint8)
+    codes = np.random.default_rng(0).integers(0, 256, (40, 30, 4), np.uint8)
     stored = np.minimum(codes, codes[..., 3:]) if is_associated else codes
-    path = write_image(tmp_path / "a.tif", stored, oiio__UnassociatedAlpha=int(not is_associated))
-    photo = read_photo(path)
+    photo = read_photo(write_image(tmp_path / "a.tif", stored, oiio__UnassociatedAlpha=int(not is_associated)))
     index = np.s_[3:30:4, ::5]
     before = photo[index]
     assert "pixels" not in vars(photo)

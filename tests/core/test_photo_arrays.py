@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from crfnet_core import Photo, read_photo
 from crfnet_core.errors import CRFNetError, PhotoError
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata
-from crfnet_core.photograph.photo import Photo
 from tests.helpers.images import write_image
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 ALPHA = np.array([[[255], [255]], [[0], [128]]], np.uint8)
@@ -163,8 +162,7 @@ def test_the_constructor_checks_its_pixels():
     others |= {"array_out_of_range": [255 * EXACT, EXACT - 1], "array_holds_nan": [np.full_like(EXACT, np.nan)]}
     for code, refused_pixels in others.items():
         for pixels in refused_pixels:
-            with refused(PhotoError, code):
-                Photo(pixels, 8, False, Path("a.png"))
+            assert refusal_of(PhotoError, Photo, pixels, 8, False, Path("a.png")).code == code
 
 
 def test_a_number_just_above_1_is_named_with_enough_digits():

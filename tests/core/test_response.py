@@ -8,9 +8,10 @@ from hypothesis.extra.numpy import arrays
 
 from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, UNIFORM, ResponseCurve, nearest_increasing
-from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.response.transfer_functions import hlg_encode, rec709_encode, srgb_encode
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
 
@@ -84,8 +85,7 @@ def test_nearest_increasing_is_the_projection(samples):
     ],
 )
 def test_what_makes_no_curve_is_refused(make, argument, code):
-    with refused(CurveError, code):
-        make(argument)
+    assert refusal_of(CurveError, make, argument).code == code
 
 
 def steep():
@@ -140,8 +140,7 @@ def test_a_number_gives_a_number():
     ],
 )
 def test_code_values_are_refused(codes):
-    with refused(CurveError, "brightness_codes"):
-        ResponseCurve.gamma().inverse(codes)
+    assert refusal_of(CurveError, ResponseCurve.gamma().inverse, codes).code == "brightness_codes"
 
 
 class OnDevice:
@@ -156,8 +155,7 @@ class OnDevice:
 )
 @pytest.mark.parametrize("function", ["forward", "inverse"])
 def test_anything_but_numbers_is_refused(argument, function):
-    with refused(CurveError, "not_numbers"):
-        getattr(ResponseCurve.gamma(), function)(argument)
+    assert refusal_of(CurveError, getattr(ResponseCurve.gamma(), function), argument).code == "not_numbers"
 
 
 def test_the_irradiances_are_uniform_and_cannot_be_changed():
@@ -166,3 +164,83 @@ def test_the_irradiances_are_uniform_and_cannot_be_changed():
     np.testing.assert_array_equal(curve.forward(curve.irradiance), curve.brightness)
     with pytest.raises(ValueError, match="read-only"):
         curve.irradiance[3] = 0.5
+
+
+def test_the_packaged_basis_is_orthonormal_about_a_mean_from_0_to_1():
+    mean, components = EmorBasis.load().mean, EmorBasis.load().components
+    assert (mean.shape, components.shape) == ((SAMPLES,), (COMPONENTS, SAMPLES))
+    np.testing.assert_allclose(components @ components.T, np.eye(COMPONENTS), atol=1e-12)
+    assert (components.sum(axis=1) > 0).all()
+    np.testing.assert_allclose(mean[[0, 512, -1]], [0, 0.75436, 1], atol=5e-5)
+    assert (np.diff(mean) > 0).all()
+
+
+def test_project_undoes_reconstruct():
+    weights = np.random.default_rng(0).normal(size=(4, 3, COMPONENTS))
+    basis = EmorBasis.load()
+    assert basis.reconstruct(weights).shape == (4, 3, SAMPLES)
+    np.testing.assert_allclose(basis.project(basis.reconstruct(weights)), weights, atol=1e-12)
+
+
+@pytest.mark.parametrize("values", ["x", None, [[0], [1, 0]], 0.5, [], np.zeros((2, 5))])
+@pytest.mark.parametrize(("function", "length"), [(EmorBasis.project, SAMPLES), (EmorBasis.reconstruct, COMPONENTS)])
+def test_other_values_are_refused(values, function, length):
+    for each in (values, np.full(length, np.nan)):
+        with pytest.raises(CurveError):
+            function(EmorBasis.load(), each)
+
+
+@pytest.mark.parametrize("curve", [255 * UNIFORM, np.round(255 * UNIFORM).astype("u1"), 1 - UNIFORM, 0 * UNIFORM])
+def test_curves_that_do_not_run_from_0_to_1_have_no_weights(curve):
+    with pytest.raises(CurveError):
+        EmorBasis.load().project([UNIFORM, curve])
+
+
+def test_a_basis_of_curves_explains_them_in_order():
+    rng = np.random.default_rng(2)
+    exponents = np.exp(rng.normal(0, 0.4, 40))
+    curves = UNIFORM ** exponents[:, None]
+    basis = EmorBasis.from_curves(curves)
+    assert (np.diff(np.var(basis.project(curves), axis=0)) <= 0).all()
+    np.testing.assert_allclose(basis.reconstruct(basis.project(curves)), curves, atol=1e-4)
+
+
+def test_a_basis_needs_enough_curves():
+    with pytest.raises(ValueError, match="needs more than 11 curves"):
+        EmorBasis.from_curves(np.zeros((5, SAMPLES)))
+
+
+STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
+SQUARE = ResponseCurve.gamma(0.5)
+
+
+def test_estimation_error_of_two_known_curves():
+    """The L2 distance of E and E ** 2: sqrt(1024 * integral of (x - x^2)^2) = sqrt(1024 / 30)."""
+    assert estimation_error(STRAIGHT, SQUARE) == pytest.approx(np.sqrt(SAMPLES / 30), rel=2e-3)
+    assert estimation_error(STRAIGHT, STRAIGHT) == 0
+    assert estimation_error(STRAIGHT, SQUARE) == estimation_error(SQUARE, STRAIGHT)
+
+
+def test_linearization_error_of_known_pixels():
+    """By hand: B = 0.25 is E = 0.25 on the straight line, and 0.5 on the square."""
+    assert linearization_error([0.25, 1.0], STRAIGHT, SQUARE) == pytest.approx(0.25 / np.sqrt(2), abs=1e-3)
+
+
+def test_counts_stand_for_repeated_pixels():
+    pixels = np.array([0.1, 0.1, 0.1, 0.6, 0.9, 0.9])
+    counted = linearization_error([0.1, 0.6, 0.9, 1.0], STRAIGHT, SQUARE, counts=[3, 1, 2, 0])
+    assert counted == pytest.approx(linearization_error(pixels, STRAIGHT, SQUARE), rel=1e-12)
+
+
+def test_the_shape_error_of_two_powers():
+    """By hand: log2(B ** 2 / B) = log2(B), whose spread over the codes 16 to 240 is a sum of logarithms."""
+    assert shape_error(STRAIGHT, SQUARE) == pytest.approx(np.std(np.log2(np.arange(16, 241))) / 2, rel=2e-2)
+
+
+def test_the_shape_error_ignores_the_exposure_which_is_the_scale_error():
+    """f(E) = 2 E until it clips: the linear light of codes below white is off by one stop everywhere."""
+    clipped = ResponseCurve.from_samples(np.minimum(2 * UNIFORM, 1))
+    assert estimation_error(STRAIGHT, clipped) > 5
+    assert shape_error(STRAIGHT, clipped) < 2e-3
+    assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
+    assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)

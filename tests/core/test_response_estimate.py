@@ -6,17 +6,13 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
+from crfnet_core import AnalysisOptions, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import CRFNetError, EstimateError, Notice, PhotoError
-from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import SCHEMA_VERSION, ResponseEstimate
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.posterior import Family
-from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 @pytest.fixture(scope="module")
@@ -79,8 +75,7 @@ def test_what_a_later_version_adds_is_left_out(estimate):
     ],
 )
 def test_another_document_is_refused(document, code):
-    with refused(EstimateError, code):
-        ResponseEstimate.from_dict(document)
+    assert refusal_of(EstimateError, ResponseEstimate.from_dict, document).code == code
 
 
 #: Entries of a document, and values that they do not have.
@@ -98,12 +93,8 @@ DAMAGES: dict[str, tuple[object, ...]] = {
     "weights": (None, 1, [], [0.0] * 10, [[0.0] * 11], *([each] * 11 for each in (10**400, math.nan, "1", True))),
     "windows": (3, {}, [3]),
     **dict.fromkeys(("windows.0.photo", "windows.0.x", "windows.0.weights"), (-1, 1.5, "1", None)),
-    **{
-        "windows.0.filled": (257, -1),
-        "windows.0.step": (0,),
-        "windows.0.kept": (1,),
-        "windows.0.expected_error": (-1,),
-    },
+    **{"windows.0.filled": (257, -1), "windows.0.step": (0,)},
+    **{"windows.0.kept": (1,), "windows.0.expected_error": (-1,)},
     **dict.fromkeys(("response.brightness", "response.upper"), (None, [0.5] * 7, [2.0] * 1024, ["0.5"] * 1024)),
 }
 
@@ -116,8 +107,7 @@ def test_a_damaged_entry_is_refused(estimate, place):
         for folder in folders:
             entry = entry[int(folder) if isinstance(entry, list) else folder]
         entry[name] = value
-        with refused(EstimateError, "damaged_estimate"):
-            ResponseEstimate.from_dict(document)
+        assert refusal_of(EstimateError, ResponseEstimate.from_dict, document).code == "damaged_estimate"
 
 
 @pytest.mark.parametrize("given", ["plate.jpg", np.zeros((300, 300, 3), np.float32), ["plate.jpg"], 3])

@@ -12,7 +12,7 @@ import pytest
 
 from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.staging import remove_abandoned, staged_files
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 def content(folder):
@@ -79,8 +79,7 @@ def test_what_is_not_on_the_disk_is_not_there(tmp_path, monkeypatch, number):
         real(descriptor)
 
     monkeypatch.setattr(os, "fsync", fail)
-    with refused(CRFNetError, "not_written"):
-        write(tmp_path, ["a.txt", "b.txt"])
+    assert refusal_of(CRFNetError, write, tmp_path, ["a.txt", "b.txt"]).code == "not_written"
     assert content(tmp_path) == {"a.txt": "old"}
 
 
@@ -183,8 +182,7 @@ def test_a_folder_that_others_have_put_in_the_place_of_the_temporary_one_is_left
             staged.rename(tmp_path / "ours")
             staged.symlink_to(secret)
 
-    with refused(CRFNetError, "not_written"):
-        exchange()
+    assert refusal_of(CRFNetError, exchange).code == "not_written"
     assert content(secret) == {"key": "secret"}
     assert [path.is_symlink() for path in (tmp_path / "out").iterdir()] == [True]
 

@@ -19,8 +19,7 @@ def test_the_vector_holds_the_parts_of_every_cue():
     light = (light - light.min()) / np.ptp(light)
     smooth = np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
     found = window_statistics(smooth)
-    assert found.shape == (LENGTH,)
-    assert found.dtype == np.float32
+    assert (found.shape, found.dtype) == ((LENGTH,), np.float32)
     samples = Samples.from_window(smooth)
     for cue in CUES:
         sums, *terms = cue.count(samples) if cue.terms else (cue.count(samples),)
@@ -60,8 +59,7 @@ def test_a_step_has_the_sums_that_one_can_count():
     assert log_difference == pytest.approx(2 * LINES * np.log(52), rel=1e-5)
     assert signed_difference == pytest.approx(0, abs=1e-2)
     assert count == 4 * 226 * LINES
-    low_level = gradients[0, 0, 3, 0]
-    assert low_level == pytest.approx(LINES * 51)
+    assert gradients[0, 0, 3, 0] == pytest.approx(LINES * 51)
 
 
 def test_a_row_of_known_triples():
@@ -69,8 +67,7 @@ def test_a_row_of_known_triples():
     window = np.zeros((227, 227, 3), np.float32)
     window[:, 100], window[:, 101:] = 128 / 255, 1
     count, ratio = parts(window)["edges"][0]
-    assert count.sum() == pytest.approx(3 * 3 * LINES)
-    assert count[0, -1] == pytest.approx(3 * LINES)
+    assert (count.sum(), count[0, -1]) == (pytest.approx(3 * 3 * LINES), pytest.approx(3 * LINES))
     assert ratio[0, -1] == pytest.approx(0, abs=1)
     halves = count[0, 7:9].sum()
     assert halves == pytest.approx(3 * LINES, rel=1e-5)

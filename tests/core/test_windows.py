@@ -33,8 +33,7 @@ def test_any_window_will_do_when_no_coverage_is_asked_for_and_a_seed_gives_the_s
 def test_filled_counts_the_bins_of_all_channels_together():
     pixels = np.zeros((4, 4, 3), np.float32)
     pixels[0, 0] = [1 / 255, 2 / 255, 1]
-    assert filled_bins(pixels) == 4
-    assert filled_bins(noise(100, 100)) == 256
+    assert (filled_bins(pixels), filled_bins(noise(100, 100))) == (4, 256)
 
 
 def test_a_poor_photograph_gets_the_best_windows_there_are():

@@ -9,12 +9,10 @@ from crfnet.configs.looks import read_looks
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.pipeline.calibrations import response_to_compare
-from crfnet_core.errors import CRFNetError
-from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core import CRFNetError, ResponseEstimate, ResponseNetwork
 from crfnet_core.library import camera_estimate
 from crfnet_core.library.camera import read_camera
 from crfnet_core.library.library import SHIPPED
-from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.posterior.prior import PRIORS
 from crfnet_core.statistics.windows import WINDOW_SIZE

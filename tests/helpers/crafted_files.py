@@ -1,4 +1,4 @@
-"""PNG, TIFF and JPEG files made by hand, whose headers say what no image writer would."""
+"""Image files made by hand, whose headers say what no image writer would."""
 
 import struct
 import zlib
@@ -17,17 +17,9 @@ def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), c
     place = count if is_big else "<I"
     begin = len(head) + struct.calcsize(place)
     tags = [
-        (256, 4, width),
-        (257, 4, height),
-        (258, 3, bits),
-        (259, 3, 1),
-        (262, 3, photometric),
-        (273, 4, begin),
-        (277, 3, samples),
-        (278, 4, height),
-        (279, 4, min(width * height * samples * bits // 8, 2**32 - 1)),
-        (339, 3, kind),
-        *extra,
+        *((256, 4, width), (257, 4, height), (258, 3, bits), (259, 3, 1), (262, 3, photometric), (273, 4, begin)),
+        *((277, 3, samples), (278, 4, height), (279, 4, min(width * height * samples * bits // 8, 2**32 - 1))),
+        *((339, 3, kind), *extra),
     ]
     directory = b"".join(struct.pack(entry, tag, form, 1, value) for tag, form, value in sorted(tags))
     start = struct.pack(place, begin + len(content))
@@ -44,6 +36,19 @@ def png(width, height, rows=b"\0", *, chunks=b""):
 def png_chunk(name, content):
     """Return a chunk of a PNG: its length, name, content and checksum."""
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+
+def box(kind, *parts):
+    """Return a box of HEIF, JPEG 2000 or JPEG XL: its length, kind and content."""
+    content = b"".join(parts)
+    return struct.pack(">I", 8 + len(content)) + kind + content
+
+
+def bmp(width, height, content, *, bits=24, coding=0, size=40, fields=b"", palette=b""):
+    """Return a BMP with a header of `size` bytes: those of every one, then `fields`, then zeros."""
+    start = struct.pack("<IiiHHIIiiII", size, width, height, 1, bits, coding, len(content), 0, 0, len(palette) // 4, 0)
+    head = (start + fields).ljust(size, b"\0") + palette
+    return struct.pack("<2sIHHI", b"BM", 14 + len(head) + len(content), 0, 0, 14 + len(head)) + head + content
 
 
 def jpeg(path, **attributes):

@@ -1,4 +1,17 @@
-"""What lies in a folder."""
+"""Write and change files, and see what lies in a folder."""
+
+
+def written(path, content):
+    """Write bytes, or text as UTF-8, and return the path."""
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def changed(path, old, new, *, to=None):
+    """Write a file with other bytes in the place of those that it has once, to itself or to `to`; return the path."""
+    content = path.read_bytes()
+    assert content.count(old) == 1
+    return written(to or path, content.replace(old, new))
 
 
 def listed(folder):

@@ -4,6 +4,7 @@ import numpy as np
 
 from crfnet_core.photograph.recognition import LOG_CURVES
 from crfnet_core.response.transfer_functions import srgb_encode
+from tests.helpers.images import write_image
 
 
 def scene_light(*, seed=0, size=480):
@@ -35,6 +36,11 @@ def log_picture(name):
     light = np.minimum(scene_light(), 0.18 * 2**4.8)
     noise = np.random.default_rng(0).standard_normal(light.shape) * np.sqrt(2e-5 * light + 9e-8)
     return quantized(LOG_CURVES[name](light + 0.002 + noise))
+
+
+def write_picture(path, pixels, **attributes):
+    """Write pixels in [0, 1] as 8-bit codes, and return the path."""
+    return write_image(path, np.rint(pixels * 255).astype(np.uint8), **attributes)
 
 
 def ordinary_picture(*, seed=0):

@@ -1,8 +1,9 @@
 """The memory that this process takes, and that reading takes in a process of its own."""
 
-import subprocess
 import sys
 from pathlib import Path
+
+from tests.helpers.processes import ran
 
 READ = """
 import sys
@@ -23,11 +24,8 @@ print(peak() - before, any(is_read))
 
 def memory_of_reading(*paths):
     """Return the kB beyond what the imports take, as Linux reports them, and whether any of the files was read."""
-    root = Path(__file__).parents[2]
-    run = subprocess.run(
-        [sys.executable, "-c", READ, *map(str, paths)], cwd=root, capture_output=True, text=True, timeout=30, check=True
-    )
-    size, is_read = run.stdout.split()
+    done = ran(sys.executable, "-c", READ, *map(str, paths), cwd=Path(__file__).parents[2], timeout=30)
+    size, is_read = done.stdout.split()
     return int(size), is_read == "True"
 
 

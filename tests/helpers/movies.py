@@ -44,6 +44,7 @@ def write_movie(
     images=None,
     times=None,
     is_interlaced=False,
+    degrees=0,
     muxer=None,
     **stream_attributes,
 ):
@@ -51,7 +52,8 @@ def write_movie(
 
     `tags` are attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
     `images` are uint8, shape (H, W, 3), by default `pictures`; `times` are in 1/24 second, by default consecutive.
-    `options` and `muxer` go to the encoder and the container; an interlaced movie has frames of two fields.
+    `options` and `muxer` go to the encoder and the container; an interlaced movie has frames of two fields. `degrees`
+    are those by which a player turns the frames.
     """
     av = pytest.importorskip("av", reason="needs PyAV: the extra video")
     if codec not in av.codecs_available:
@@ -68,6 +70,8 @@ def write_movie(
         for name, value in stream_attributes.items():
             setattr(stream, name, value)
         color = {f"dst_{name}": value for name, value in (tags or {}).items() if name in ("color_range", "colorspace")}
+        if degrees:
+            stream.set_display_rotation(degrees)
         images = pictures(count, size) if images is None else images
         for time, image in zip(range(count) if times is None else times, images, strict=False):
             frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form, **color)

@@ -9,8 +9,9 @@ import os
 import platform
 import signal
 import struct
-import subprocess
 import sys
+
+from tests.helpers.processes import ran
 
 #: The number of the system call `socket` on each machine.
 SOCKET_CALLS = {"x86_64": 41, "aarch64": 198}
@@ -29,7 +30,7 @@ LOAD_WORD, JUMP_IF_EQUAL, RETURN = 0x20, 0x15, 0x06
 
 def run_without_sockets(command, **options):
     """Run `command`; its return code is `OPENED_A_SOCKET` if it tried to open a socket, which ended it."""
-    return subprocess.run(command, preexec_fn=_forbid_sockets, capture_output=True, text=True, check=False, **options)
+    return ran(*command, preexec_fn=_forbid_sockets, **options)
 
 
 class _Program(ctypes.Structure):

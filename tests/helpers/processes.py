@@ -1,4 +1,4 @@
-"""Start a process that Control-C can interrupt, however the tests themselves were started."""
+"""Run a process to its end, or start one that Control-C can interrupt, however the tests themselves were started."""
 
 import signal
 import subprocess
@@ -12,6 +12,11 @@ def start_interruptible(command, **options):
     test that sends one would wait for ever.
     """
     return subprocess.Popen(command, preexec_fn=_restore_signals, **options)
+
+
+def ran(*command, **options):
+    """Return how a command ended, with the texts that it printed."""
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
 
 
 def _restore_signals():

@@ -4,6 +4,7 @@ import errno
 import json
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -18,11 +19,9 @@ from crfnet.output_files import OutputFiles
 from crfnet.pipeline import estimates
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
-from crfnet_core.errors import CRFNetError
-from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core import AnalysisOptions, CRFNetError, ResponseCurve
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family
-from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.refusals import refused
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
@@ -89,8 +88,7 @@ class TestExport:
         return self.planned(tmp_path / "look")
 
     def planned(self, folder, *, overwrite=False):
-        outputs = OutputOptions(has_sheet=False, has_linear=False)
-        files = OutputFiles.named(folder, [Path("plate.png")], outputs)
+        files = OutputFiles.named(folder, [Path("plate.png")], OutputOptions(has_sheet=False, has_linear=False))
         space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
         return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), space)
 
@@ -110,20 +108,14 @@ class TestExport:
 
     @pytest.mark.parametrize("step", ["pathlib.Path.mkdir", "tempfile.mkdtemp"])
     def test_a_folder_that_cannot_be_made_or_written_to_is_refused(self, plan, tmp_path, monkeypatch, step):
-        def refuse(*_arguments, **_options):
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-        monkeypatch.setattr(step, refuse)
+        monkeypatch.setattr(step, Mock(side_effect=OSError(errno.ENOSPC, "No space left on device")))
         with refused(PlateError, "folder_not_written", path=tmp_path / "look", reason="No space left on device"):
             pipeline.deliver(plan, light_of(LUT))
         assert not (tmp_path / "look").exists()
 
     @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
     def test_a_failure_in_the_middle_leaves_nothing(self, plan, monkeypatch, problem):
-        def fail(*arguments, **options):
-            raise problem
-
-        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", fail)
+        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", Mock(side_effect=problem))
         with pytest.raises(type(problem)):
             pipeline.deliver(plan, light_of(LUT))
         assert not plan.files.config.parent.exists()

@@ -6,10 +6,7 @@ import math
 import pytest
 
 from crfnet.report import facts, words
-from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
+from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
 from crfnet_core.posterior import Family, Verdict
 
@@ -52,6 +49,7 @@ def test_the_lines_of_an_estimate(estimate):
     ("fields", "text"),
     [
         *(({"shape_uncertainty": float(text)}, f"{text} stop") for text in ("0.3002", "0.2998", "0.30", "0.11")),
+        ({"shape_uncertainty": 0.3 + 1e-9}, "0.300000 stop"),
         ({"uncertainty": 2.504}, "(E_est 2.50)"),
     ],
 )

@@ -3,10 +3,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core import ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import CameraAnswer
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.images import read_image
 
@@ -48,8 +46,7 @@ def test_the_windows_lie_where_they_were_whatever_the_preview(photo, estimate, t
     """A preview of every second pixel moves no window: the two pictures differ in sharpness only."""
     sheet.draw_sheet(tmp_path / "all.png", photo.pixels, estimate)
     sheet.draw_sheet(tmp_path / "half.png", photo.pixels[::2, ::2], estimate, stride=2)
-    difference = np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png"))
-    assert difference.mean() < 3
+    assert np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png")).mean() < 3
 
 
 def test_a_stored_camera_s_response_shows_neither_model_nor_windows(photo, estimate, tmp_path):

@@ -13,9 +13,11 @@ from crfnet_core.colorimetry import ADOBE_RGB
 from crfnet_core.errors import CalibrationError, PhotoError
 from crfnet_core.photograph.camera_raw import read_raw
 from crfnet_core.response.metrics import shape_error
+from tests.helpers.folders import written
 from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import CAMERAS, XYZ, chart, write_dng
 from tests.helpers.pairs import PairOptions, make_pair, spoil
+from tests.helpers.refusals import refusal_of, refused
 from tests.helpers.stacks import light_of
 
 #: Shape errors in stops; the color of the light.
@@ -47,15 +49,7 @@ def measured(scene, true_response, tmp_path_factory):
     options = PairOptions(light=LIGHT, crop=0.02, distortion=0.02, vignetting=0.5)
     tints = np.exp2(np.random.default_rng(0).uniform(-0.7, 0.7, (8, 16, 3))).repeat(64, axis=0).repeat(64, axis=1)
     colored = scene * tints[: scene.shape[0], : scene.shape[1]]
-    paths = make_pair(tmp_path_factory.mktemp("pair"), colored, true_response, options)
-    return calibrate_pairs(paths)
-
-
-def refused(function, paths):
-    """Return the code of the error that a measurement raises."""
-    with pytest.raises(CalibrationError) as problem:
-        function(paths)
-    return problem.value.code
+    return calibrate_pairs(make_pair(tmp_path_factory.mktemp("pair"), colored, true_response, options))
 
 
 def test_one_pair_gives_the_shape_of_the_response(measured, true_response):
@@ -68,8 +62,7 @@ def test_vignetting_and_the_matrix_are_found_and_no_local_tones(measured):
     assert abs(measured.local) < 0.03
     to_camera = CAMERAS["one"] @ XYZ * LIGHT
     true = np.linalg.inv(to_camera / to_camera.sum(axis=1, keepdims=True))
-    found = measured.matrix / measured.matrix.sum(axis=1, keepdims=True)
-    np.testing.assert_allclose(found, true, atol=0.2)
+    np.testing.assert_allclose(measured.matrix / measured.matrix.sum(axis=1, keepdims=True), true, atol=0.2)
 
 
 def test_several_shots_are_measured_together(pair, true_response):
@@ -102,7 +95,7 @@ def test_what_is_not_the_camera_s_own_jpeg_of_this_shot_is_refused(
     other, options = light_of(root / "tests" / "data" / "lights" / "city.exr"), PairOptions(seed=seed)
     paths = pair(seed=seed)
     spoil(kind, tmp_path, paths[1], other, scene, true_response, options)
-    assert re.fullmatch(code, refused(calibrate_pairs, paths))
+    assert re.fullmatch(code, refusal_of(CalibrationError, calibrate_pairs, paths).code)
     if code == "frame_edited":
         warnings = calibrate_pairs(paths, accept_edited=True).warnings
         assert "measures_program" in [warning.code for warning in warnings]
@@ -111,34 +104,32 @@ def test_what_is_not_the_camera_s_own_jpeg_of_this_shot_is_refused(
 def test_a_copy_another_camera_and_the_jpeg_of_another_exposure_are_named(pair, tmp_path):
     first, second = pair("first"), pair("second", seed=1)
     copies = [shutil.copy(path, tmp_path / f"copy{path.suffix}") for path in first]
-    assert refused(calibrate_pairs, [*first, *copies]) == "frame_twice"
+    assert refusal_of(CalibrationError, calibrate_pairs, [*first, *copies]).code == "frame_twice"
     write_image(second[1], read_image(second[1], kind="uint8"), Make="Canon", ExposureTime=1.1)
-    assert refused(calibrate_pairs, [*first, *second]) == "frame_camera"
+    assert refusal_of(CalibrationError, calibrate_pairs, [*first, *second]).code == "frame_camera"
     write_image(second[1], read_image(second[1], kind="uint8"), ExposureTime=2.0)
-    assert refused(calibrate_pairs, second) == "pair_exposed"
+    assert refusal_of(CalibrationError, calibrate_pairs, second).code == "pair_exposed"
 
 
 def test_a_shot_without_flat_places_is_named(pair, scene):
     texture = np.exp2(np.random.default_rng(0).uniform(-3, 0, (*scene.shape[:2], 1))).astype(np.float32)
     rough = np.maximum(scene, np.percentile(scene, 80)) * texture
-    with pytest.raises(CalibrationError) as problem:
-        calibrate_pairs([*pair("first"), *pair("second", shown=rough)])
-    assert (problem.value.code, problem.value.facts["path"].name) == ("few_cells", "second.dng")
+    first, second = pair("first"), pair("second", shown=rough)
+    with refused(CalibrationError, "few_cells", path=second[0]):
+        calibrate_pairs([*first, *second])
 
 
 def test_strong_local_tone_mapping_a_dark_picture_and_a_raw_file_alone_are_refused(pair, scene, tmp_path):
-    assert refused(calibrate_pairs, pair(local=0.15)) == "local_tones"
     dark = np.append(scene, np.full_like(scene[:9], 60 * scene.max()), axis=0)
-    assert refused(calibrate_pairs, pair(shown=dark)) == "pair_dark"
-    assert refused(calibrate_pairs, [write_dng(tmp_path / "alone.dng", scene)]) == "raw_without_jpeg"
+    alone = [write_dng(tmp_path / "alone.dng", scene)]
+    cases = {"local_tones": pair(local=0.15), "pair_dark": pair("dark", shown=dark), "raw_without_jpeg": alone}
+    for code, paths in cases.items():
+        assert refusal_of(CalibrationError, calibrate_pairs, paths).code == code
 
 
 def test_a_raw_file_that_libraw_cannot_read_is_refused_by_its_kind(tmp_path):
-    path = tmp_path / "broken.gpr"
-    path.write_bytes(bytes(1000))
-    with pytest.raises(PhotoError) as problem:
-        read_raw(path)
-    assert (problem.value.code, problem.value.facts["suffix"]) == ("raw_not_read", ".gpr")
+    with refused(PhotoError, "raw_not_read", suffix=".gpr"):
+        read_raw(written(tmp_path / "broken.gpr", bytes(1000)))
 
 
 def test_pairs_are_found_by_name(tmp_path):
@@ -149,8 +140,8 @@ def test_pairs_are_found_by_name(tmp_path):
     assert found == [("a.NEF", "a.jpg"), ("b.nef", "B.JPG"), ("c.nef", None)]
     assert find_pairs([tmp_path / "a.NEF"]) == ((tmp_path / "a.NEF", tmp_path / "a.jpg"),)
     assert find_pairs([tmp_path / "a.NEF", tmp_path / "d.jpg"]) == ((tmp_path / "a.NEF", tmp_path / "d.jpg"),)
-    assert refused(find_pairs, [tmp_path / "a.NEF", tmp_path / "b.nef", tmp_path / "d.jpg"]) == "jpeg_without_raw"
-    assert refused(find_pairs, [tmp_path / "d.jpg"]) == "no_raw_file"
+    for others, code in ((["a.NEF", "b.nef", "d.jpg"], "jpeg_without_raw"), (["d.jpg"], "no_raw_file")):
+        assert refusal_of(CalibrationError, find_pairs, [tmp_path / name for name in others]).code == code
 
 
 @pytest.mark.parametrize(("mirrored", "quarters"), [(False, 0), (False, 1), (True, 0), (True, 3), (False, 2)])

@@ -1,4 +1,5 @@
 import shutil
+from functools import partial
 
 import numpy as np
 import pytest
@@ -8,14 +9,10 @@ from crfnet_core.calibration.checks import check_range
 from crfnet_core.calibration.exposures import ExposureLabel, stack_exposures
 from crfnet_core.errors import CalibrationError
 from tests.helpers.images import read_image, write_image
+from tests.helpers.refusals import refusal_of, refused
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
-
-def refusal(paths, **options):
-    with pytest.raises(CalibrationError) as caught:
-        calibrate_stack(paths, **options)
-    assert str(caught.value) != caught.value.code
-    return caught.value
+refusal = partial(refusal_of, CalibrationError, calibrate_stack)
 
 
 def refused_or_named(paths, **options):
@@ -28,16 +25,14 @@ def refused_or_named(paths, **options):
 
 def test_too_few_frames_one_given_twice_or_of_another_size_are_named(stack):
     paths = stack(frames=4)
-    problem = refusal(paths[:3])
-    assert (problem.code, problem.facts["count"]) == ("few_frames", 3)
-    copy = paths[0].with_name("copy.jpg")
-    shutil.copy(paths[0], copy)
-    for twice in (paths[0], copy):
-        problem = refusal([*paths, twice])
-        assert (problem.code, problem.facts["path"], problem.facts["first"]) == ("frame_twice", twice, "stack_00.jpg")
+    with refused(CalibrationError, "few_frames", count=3):
+        calibrate_stack(paths[:3])
+    for twice in (paths[0], shutil.copy(paths[0], paths[0].with_name("copy.jpg"))):
+        with refused(CalibrationError, "frame_twice", path=twice, first="stack_00.jpg"):
+            calibrate_stack([*paths, twice])
     write_image(paths[2], np.zeros((64, 80, 3), np.uint8), ExposureTime=1.0)
-    problem = refusal(paths)
-    assert (problem.code, problem.facts["size"]) == ("frame_size", "80 x 64")
+    with refused(CalibrationError, "frame_size", size="80 x 64"):
+        calibrate_stack(paths)
 
 
 def test_frames_without_times_of_different_bit_depths_or_cameras_are_refused(tmp_path, codes):
@@ -47,9 +42,8 @@ def test_frames_without_times_of_different_bit_depths_or_cameras_are_refused(tmp
     write_image(paths[0], codes.astype(np.uint16) * 257, **header)
     assert refusal(paths).code == "frame_bits"
     write_image(paths[0], codes, **header | {"Model": "B"})
-    problem = refusal(paths)
-    cameras = problem.facts["camera"], problem.facts["first_camera"]
-    assert (problem.code, *cameras) == ("frame_camera", "Canon A", "Canon B")
+    with refused(CalibrationError, "frame_camera", camera="Canon A", first_camera="Canon B"):
+        calibrate_stack(paths)
 
 
 @pytest.mark.parametrize(
@@ -68,8 +62,8 @@ def test_times_that_are_no_stack_are_refused(stack, seconds, code):
 
 def test_edited_frames_are_refused_unless_accepted(stack):
     paths = stack(header={"Software": "Adobe Photoshop Lightroom 6.0"})
-    problem = refusal(paths)
-    assert (problem.code, problem.facts["editor"]) == ("frame_edited", "Adobe Photoshop Lightroom 6.0")
+    with refused(CalibrationError, "frame_edited", editor="Adobe Photoshop Lightroom 6.0"):
+        calibrate_stack(paths)
     assert calibrate_stack(paths, accept_edited=True).reaches_white
 
 
@@ -117,8 +111,8 @@ def test_a_stack_whose_only_other_exposure_shows_another_scene_is_refused(tmp_pa
         light = np.kron(np.exp2(rng.uniform(-6, 0, (30, 40, 1))), np.ones((16, 16, 3))) * time * 54
         codes = 255 * np.minimum(light, 1) ** (1 / 2.2) + np.random.default_rng(i).normal(0, 0.4, light.shape)
         paths.append(write_image(tmp_path / f"{i}.png", np.rint(codes).clip(0, 255).astype(np.uint8)))
-    problem = refusal(paths, seconds=seconds)
-    assert (problem.code, problem.facts["unfit"], problem.facts["count"]) == ("rest_span", 1, 6)
+    with refused(CalibrationError, "rest_span", unfit=1, count=6):
+        calibrate_stack(paths, seconds=seconds)
 
 
 def test_exposures_at_the_limits_are_not_refused():
@@ -140,5 +134,5 @@ def test_frames_of_two_responses_are_refused_or_named(stack, tmp_path, seed, cod
 )
 def test_light_that_a_channel_does_not_see_is_refused(tmp_path, light, true_response, gains, channels):
     paths = make_stack(tmp_path, light * np.float32(gains), true_response, StackOptions(quality=0, read_noise=0))
-    problem = refusal(paths)
-    assert (problem.code, problem.facts["channels"]) == ("dark_channel", channels)
+    with refused(CalibrationError, "dark_channel", channels=channels):
+        calibrate_stack(paths)

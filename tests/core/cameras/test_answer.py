@@ -9,8 +9,7 @@ from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.posterior import Verdict
 from tests.helpers.cameras import camera, photograph
-from tests.helpers.footage import log_picture
-from tests.helpers.images import write_image
+from tests.helpers.footage import log_picture, write_picture
 
 
 @pytest.fixture(scope="module")
@@ -47,8 +46,7 @@ def test_photographs_of_another_camera_are_warned_of_once(estimate):
 
 
 def test_footage_stays_untrusted(tmp_path):
-    footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
-    photo = read_photo(write_image(tmp_path / "log.png", footage))
+    photo = read_photo(write_picture(tmp_path / "log.png", log_picture("Sony S-Log3")))
     alone = estimate_response(photo, network=ResponseNetwork.load())
     answer = with_camera(alone, camera("a"))
     assert (answer.verdict, answer.recognition) == (Verdict.DO_NOT_TRUST, alone.recognition)

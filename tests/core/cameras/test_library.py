@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ from crfnet_core.library import (
 from crfnet_core.library.camera import read_camera
 from crfnet_core.posterior import Verdict
 from tests.helpers.cameras import camera
-from tests.helpers.refusals import refused
+from tests.helpers.folders import written
+from tests.helpers.refusals import refusal_of, refused
 
 
 @pytest.fixture
@@ -27,9 +29,7 @@ def library(tmp_path):
 @pytest.fixture
 def calibration(tmp_path):
     """The document of a calibration, a7.json."""
-    path = tmp_path / "a7.json"
-    path.write_text(json.dumps(CALIBRATION))
-    return path
+    return written(tmp_path / "a7.json", json.dumps(CALIBRATION))
 
 
 @pytest.fixture
@@ -38,17 +38,9 @@ def own(monkeypatch, tmp_path):
     return CameraLibrary.of_user()
 
 
-def code_of(function, *arguments, **options):
-    with pytest.raises(CameraError) as caught:
-        function(*arguments, **options)
-    assert str(caught.value).isprintable()
-    return caught.value.code
-
-
 def test_what_is_read_is_what_was_written(library):
     first = camera("a", make="SONY", model="ILCE-7M3", software="v2", iso=(100, 400))
-    path = library.save(first)
-    assert (path, library.get("a")) == (library.folder / "a.json", first)
+    assert (library.save(first), library.get("a")) == (library.folder / "a.json", first)
     assert first.basis == "measured from 6 exposures, ISO 100 to 400"
 
 
@@ -65,18 +57,18 @@ def test_the_file_is_named_after_the_camera(library, calibration, name, kept):
     "name", ["", " ", "-", ".a", "a/b", "..", "a\\b", "a:b", "a\nb\x07", "a.", "CON", "com1.x", "x" * 61]
 )
 def test_a_name_that_no_file_can_have_is_refused(tmp_path, name):
-    assert code_of(read_calibration, tmp_path / "a.json", name) == "bad_camera_name"
+    assert refusal_of(CameraError, read_calibration, tmp_path / "a.json", name).code == "bad_camera_name"
 
 
 def test_a_camera_is_replaced_only_when_asked_and_removed(library):
     library.save(camera("a", iso=(100,)))
-    assert code_of(library.save, camera("A", iso=(200,))) == "camera_exists"
+    assert refusal_of(CameraError, library.save, camera("A", iso=(200,))).code == "camera_exists"
     assert library.get("a").settings.iso == (100,)
     library.save(camera("A", iso=(200,)), overwrite=True)
     assert [one.settings.iso for one in library.cameras()] == [(200,)]
     library.remove("a")
     assert library.cameras() == []
-    assert code_of(library.remove, "a") == "no_camera"
+    assert refusal_of(CameraError, library.remove, "a").code == "no_camera"
 
 
 DAMAGES = {
@@ -93,9 +85,8 @@ CHANGES += [{"scale_stops": stops} for stops in (1e9, True)] + [{"iso": iso} for
 
 @pytest.mark.parametrize(("text", "code"), DAMAGES.values(), ids=DAMAGES)
 def test_a_damaged_file_is_refused_and_hides_no_other(library, text, code):
-    path = library.save(camera("a")).with_name("b.json")
-    path.write_text(text)
-    assert code_of(library.get, "b") == code
+    path = written(library.save(camera("a")).with_name("b.json"), text)
+    assert refusal_of(CameraError, library.get, "b").code == code
     assert [one.name for one in library.cameras()] == ["a"]
     (problem,) = library.problems()
     assert problem.startswith(str(path))
@@ -105,13 +96,12 @@ def changed(folder, change):
     """The file of a camera whose measurement has other entries."""
     document = camera_document(camera("a"))
     document["measured"] |= change
-    (folder / "a.json").write_text(json.dumps(document))
-    return folder / "a.json"
+    return written(folder / "a.json", json.dumps(document))
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=str)
 def test_an_entry_of_another_kind_is_refused(tmp_path, change):
-    assert code_of(read_camera, changed(tmp_path, change)) == "damaged_camera"
+    assert refusal_of(CameraError, read_camera, changed(tmp_path, change)).code == "damaged_camera"
 
 
 def test_control_characters_of_a_file_are_not_printed(tmp_path):
@@ -144,26 +134,22 @@ def test_a_calibration_becomes_a_camera(calibration):
 )
 def test_other_files_are_no_calibration(tmp_path, text, code):
     if text is not None:
-        (tmp_path / "a.json").write_text(text)
-    assert code_of(read_calibration, tmp_path / "a.json") == code
+        written(tmp_path / "a.json", text)
+    assert refusal_of(CameraError, read_calibration, tmp_path / "a.json").code == code
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path):
-    (tmp_path / "file").touch()
-    assert code_of(CameraLibrary(tmp_path / "file" / "cameras").save, camera("a")) == "camera_folder"
+    with refused(CameraError, "camera_folder"):
+        CameraLibrary(written(tmp_path / "file", "") / "cameras").save(camera("a"))
 
 
 def test_a_folder_that_may_not_be_read_has_no_cameras_to_offer(tmp_path, monkeypatch):
     """As the home of another user: no estimate fails for that, but a camera that is asked for by name."""
-
-    def refuse(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(Path, "glob", refuse)
+    monkeypatch.setattr(Path, "glob", Mock(side_effect=PermissionError(13, "Permission denied")))
     library = CameraLibrary(tmp_path)
     assert library.cameras() == []
     assert "Permission denied" in library.problems()[0]
-    assert code_of(library.get, "a") == "camera_folder"
+    assert refusal_of(CameraError, library.get, "a").code == "camera_folder"
 
 
 def test_the_user_s_own_library_is_where_the_variable_or_the_system_says(own, monkeypatch, tmp_path):

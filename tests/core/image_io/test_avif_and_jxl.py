@@ -10,9 +10,10 @@ from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.jxl_files import JxlHeader, with_jxl_boxes
 from crfnet_core.photograph.metadata.origin import file_origin
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.crafted_files import xmp_packet
+from tests.helpers.crafted_files import box, xmp_packet
+from tests.helpers.folders import written
 from tests.helpers.images import write_image
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 NO_CAMERA = "the file names no camera"
 
@@ -56,7 +57,7 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
     deep_avif(tmp_path / "a.avif", codes, 1)
     content = (tmp_path / "a.avif").read_bytes()
     at = content.index(b"colrnclx") + 14
-    (tmp_path / "b.avif").write_bytes(content[:at] + b"\x80" + content[at + 1 :])
+    written(tmp_path / "b.avif", content[:at] + b"\x80" + content[at + 1 :])
     limited, full = (read_codes(tmp_path / name).codes.astype(int) for name in ("a.avif", "b.avif"))
     assert np.abs(limited - codes).mean() < 4
     assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
@@ -65,8 +66,7 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
 @pytest.mark.parametrize("name", ["alpha10.avif", "cropped8.avif"])
 def test_avif_that_no_decoder_reads_in_full_is_refused(root, name):
     """PyAV leaves out alpha, by which the colors may be multiplied; Pillow and PyAV do not crop."""
-    with refused(PhotoError, "coding_not_read"):
-        read_codes(root / "tests" / "data" / "heif" / name)
+    assert refusal_of(PhotoError, read_codes, root / "tests" / "data" / "heif" / name).code == "coding_not_read"
 
 
 @pytest.mark.parametrize("quality", [90, 100])
@@ -75,20 +75,14 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
     srgb = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
     curve = struct.pack(">i", round(2.4 * 65536))
     assert curve in srgb
-    header = oiio.ImageSpec(64, 48, 3, oiio.UINT8)
-    header.attribute("compression", f"jpegxl:{quality}")
     profile = np.frombuffer(srgb.replace(curve, struct.pack(">i", round(1.7 * 65536))), np.uint8)
-    header.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{profile.size}]"), profile)
-    output = oiio.ImageOutput.create(str(tmp_path / "a.jxl"))
-    assert output.open(str(tmp_path / "a.jxl"), header)
-    assert output.write_image(colored_ramp(8))
-    output.close()
+    attributes = {"compression": f"jpegxl:{quality}", "ICCProfile": (oiio.TypeDesc(f"uint8[{profile.size}]"), profile)}
+    path = write_image(tmp_path / "a.jxl", colored_ramp(8), **attributes)
     if quality == 100:
-        np.testing.assert_array_equal(read_codes(tmp_path / "a.jxl").codes, colored_ramp(8))
+        np.testing.assert_array_equal(read_codes(path).codes, colored_ramp(8))
         return
     for read in (read_codes, read_metadata):
-        with refused(PhotoError, "jxl_linear"):
-            read(tmp_path / "a.jxl")
+        assert refusal_of(PhotoError, read, path).code == "jxl_linear"
 
 
 @pytest.mark.parametrize(("box", "words"), [(b"brob", "its EXIF is compressed and was not read"), (b"skip", NO_CAMERA)])
@@ -105,11 +99,9 @@ def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
     exif[0x010F], exif[0x0112] = "Maker", 6
     xmp = xmp_packet(b'xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="Adobe Photoshop 25.0"')
     content = write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100").read_bytes()
-    boxes = {b"Exif": bytes(4) + exif.tobytes(), b"xml ": xmp}
-    added = b"".join(struct.pack(">I", 8 + len(box)) + kind + box for kind, box in boxes.items())
+    added = box(b"Exif", bytes(4), exif.tobytes()) + box(b"xml ", xmp)
     at = content.index(b"jxlp") - 4
-    (tmp_path / "a.jxl").write_bytes(content[:at] + added + content[at:])
-    values = read_codes(tmp_path / "a.jxl")
+    values = read_codes(written(tmp_path / "a.jxl", content[:at] + added + content[at:]))
     np.testing.assert_array_equal(values.codes, codes)
     assert (values.metadata.make, values.metadata.software) == ("Maker", "Adobe Photoshop 25.0")
     assert values.header.get_int_attribute("Orientation") == 1
@@ -118,14 +110,12 @@ def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):
 def test_lossy_gray_jpeg_xl_is_refused_as_linear_light(tmp_path):
     header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
     header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
-    with refused(PhotoError, "jxl_linear"):
-        with_jxl_boxes(header, tmp_path, JxlHeader())
+    assert refusal_of(PhotoError, with_jxl_boxes, header, tmp_path, JxlHeader()).code == "jxl_linear"
 
 
 def test_lossless_jpeg_xl_tagged_linear_keeps_its_codes_and_its_tag(tmp_path):
     content = "ff0a18401050b40808020100a8004b12c582852452d2f3273b13527c6f09760036999979f8f3e7441e5d23efa3b3c97cde05170"
-    (tmp_path / "a.jxl").write_bytes(bytes.fromhex(content.ljust(256, "0")))
-    values = read_codes(tmp_path / "a.jxl")
+    values = read_codes(written(tmp_path / "a.jxl", bytes.fromhex(content.ljust(256, "0"))))
     np.testing.assert_array_equal(values.codes, np.arange(72).reshape(4, 6, 3) * 3 + 7)
     assert values.metadata.color.transfer == "linear"
 
@@ -135,14 +125,13 @@ def test_lossless_jpeg_xl_tagged_linear_keeps_its_codes_and_its_tag(tmp_path):
 def test_an_animation_of_jpeg_xl_and_a_preview_are_refused(tmp_path, head, place, problem):
     """OpenImageIO would return the last frame. The bits: small sides, fields that are not the default, the problem."""
     fields = 1 | 3 << 1 | 1 << 6 | 1 << 10 | 1 << place
-    (tmp_path / "a.jxl").write_bytes(head + b"\xff\x0a" + fields.to_bytes(86, "little"))
+    path = written(tmp_path / "a.jxl", head + b"\xff\x0a" + fields.to_bytes(86, "little"))
     with refused(PhotoError, "coding_not_read", problem=problem):
-        read_codes(tmp_path / "a.jxl")
+        read_codes(path)
 
 
 def test_jpeg_xl_of_10_bits_is_turned_upright_says_so_and_keeps_its_bits(tmp_path):
     content = "ff0a18400b0514970408020100c8004b12c5828524d640e436100841d5555007a02b140a85429f38e6828593a14796c542dd8f9c"
-    (tmp_path / "a.jxl").write_bytes(bytes.fromhex((content + "da160a0d8d576802").ljust(256, "0")))
-    values = read_codes(tmp_path / "a.jxl")
+    values = read_codes(written(tmp_path / "a.jxl", bytes.fromhex((content + "da160a0d8d576802").ljust(256, "0"))))
     assert (values.bit_depth, values.metadata.is_turned) == (10, True)
     np.testing.assert_array_equal(values.codes, np.rot90(np.arange(72).reshape(4, 6, 3) * 14 + 7, -1))

@@ -9,7 +9,9 @@ from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.refusals import refused
+from tests.helpers.crafted_files import box
+from tests.helpers.folders import changed, written
+from tests.helpers.refusals import refusal_of, refused
 
 #: The largest difference in codes: lossless RGB is exact; a matrix rounds twice, and limited range has fewer codes.
 FILES = {"rgb8.heic": 0, "rgb10.heic": 0, "full8.heic": 1, "limited8.heic": 2, "limited10.heic": 2}
@@ -25,10 +27,8 @@ def heif(root):
 def test_heic_keeps_its_codes(heif, name):
     values = read_codes(heif / name)
     bits = 10 if "10" in name else 8
-    assert values.bit_depth == bits
-    assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
-    difference = np.abs(values.codes.astype(int) - colored_ramp(bits))
-    assert difference.max() <= FILES[name]
+    assert (values.bit_depth, values.codes.dtype) == (bits, np.uint8 if bits == 8 else np.uint16)
+    assert np.abs(values.codes.astype(int) - colored_ramp(bits)).max() <= FILES[name]
 
 
 def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
@@ -45,18 +45,13 @@ def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
     assert (values.metadata.make, values.metadata.model) == ("Apple", "iPhone 15")
     assert values.metadata.file_format == "HEIC"
     profile = bytes(values.header.getattribute("ICCProfile"))
-    assert profile[36:40] == b"acsp"
-    assert len(profile) == struct.unpack(">I", profile[:4])[0]
+    assert (profile[36:40], len(profile)) == (b"acsp", struct.unpack(">I", profile[:4])[0])
 
 
 @pytest.mark.parametrize(("code", "name"), [(16, "PQ"), (18, "HLG"), (8, "linear"), (13, "")])
 def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
-    content = (heif / "rgb10.heic").read_bytes()
-    assert content.count(b"nclx\x00\x0c\x00\x0d") == 1
-    (tmp_path / "a.heic").write_bytes(
-        content.replace(b"nclx\x00\x0c\x00\x0d", b"nclx\x00\x0c" + struct.pack(">H", code))
-    )
-    color = read_codes(tmp_path / "a.heic").metadata.color
+    old, new = (b"nclx\0\x0c" + struct.pack(">H", each) for each in (13, code))
+    color = read_codes(changed(heif / "rgb10.heic", old, new, to=tmp_path / "a.heic")).metadata.color
     assert (color.transfer, color.source) == (name, "CICP")
     assert color.primaries == DISPLAY_P3
 
@@ -65,8 +60,7 @@ def with_gain_map(content, mark):
     """Return a HEIC whose box `meta` lies at its end, so that offsets hold, and contains one more box with a mark."""
     at = content.index(b"meta")
     size = int.from_bytes(content[at - 4 : at])
-    box = struct.pack(">I", 8 + len(mark)) + b"free" + mark
-    meta = struct.pack(">I", size + len(box)) + content[at : at - 4 + size] + box
+    meta = box(content[at : at + 4], content[at + 4 : at - 4 + size], box(b"free", mark))
     return content[:at] + b"free" + content[at + 4 :] + meta
 
 
@@ -74,8 +68,7 @@ def with_gain_map(content, mark):
 def test_a_gain_map_is_said_and_the_base_picture_read(heif, tmp_path, mark):
     content = (heif / "rgb8.heic").read_bytes()
     assert not read_photo(heif / "rgb8.heic").metadata.has_gain_map
-    (tmp_path / "a.heic").write_bytes(with_gain_map(content, mark))
-    values = read_codes(tmp_path / "a.heic")
+    values = read_codes(written(tmp_path / "a.heic", with_gain_map(content, mark)))
     assert values.metadata.has_gain_map
     np.testing.assert_array_equal(values.codes, colored_ramp(8))
 
@@ -106,8 +99,7 @@ def test_alpha_of_avif_is_told_from_none(tmp_path):
 )
 def test_a_missing_package_is_named(heif, monkeypatch, name, package, code):
     monkeypatch.setitem(sys.modules, package, None)
-    with refused(PhotoError, code):
-        read_photo(heif / name)
+    assert refusal_of(PhotoError, read_photo, heif / name).code == code
 
 
 @pytest.mark.parametrize("name", ["rgb8.heic", "limited10.avif"])
@@ -116,19 +108,16 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
     if name.endswith("avif"):
         pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
     content = (heif / name).read_bytes()
-    path = tmp_path / name
-    path.write_bytes(content[: int(len(content) * fraction)])
-    with refused(PhotoError, "damaged"):
-        read_photo(path)
+    path = written(tmp_path / name, content[: int(len(content) * fraction)])
+    assert refusal_of(PhotoError, read_photo, path).code == "damaged"
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     """They would end the process in pi-heif 1.4."""
-    content = (heif / "phone.heic").read_bytes()
-    assert content.count(b"Exif\0\0\0\0\x0epitm") == 1
-    (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
+    rest = b"xif\0\0\0\0\x0epitm"
+    path = changed(heif / "phone.heic", b"E" + rest, b"\xff" + rest, to=tmp_path / "a.heic")
     with refused(PhotoError, "damaged", problem="the type of an item is not text"):
-        read_photo(tmp_path / "a.heic")
+        read_photo(path)
 
 
 @pytest.mark.parametrize(
@@ -145,23 +134,19 @@ def test_a_coding_that_the_decoder_lacks_is_not_called_damage(heif, tmp_path, na
     if name != "a.heic":
         Image.fromarray(colored_ramp(8)).save(tmp_path / name)
         content = (tmp_path / name).read_bytes()
-    (tmp_path / name).write_bytes(content.replace(stored, other, 1))
-    with refused(PhotoError, "coding_not_read"):
-        read_photo(tmp_path / name)
+    path = written(tmp_path / name, content.replace(stored, other, 1))
+    assert refusal_of(PhotoError, read_photo, path).code == "coding_not_read"
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
     monkeypatch.setattr("crfnet_core.photograph.image_io.header_checks.MAX_PIXELS", 64 * 48 - 1)
     monkeypatch.setattr("crfnet_core.photograph.image_io.pillow_files._heic", None)
-    with refused(PhotoError, "too_many_pixels"):
-        read_photo(heif / "rgb8.heic")
+    assert refusal_of(PhotoError, read_photo, heif / "rgb8.heic").code == "too_many_pixels"
 
 
 def test_exif_that_is_not_utf8_is_read(heif, tmp_path):
-    content = (heif / "phone.heic").read_bytes()
-    assert content.count(b"Apple\0") == 1
-    (tmp_path / "a.heic").write_bytes(content.replace(b"Apple\0", b"Appl\xe9\0"))
-    assert read_codes(tmp_path / "a.heic").metadata.make == "Appl?"
+    path = changed(heif / "phone.heic", b"Apple\0", b"Appl\xe9\0", to=tmp_path / "a.heic")
+    assert read_codes(path).metadata.make == "Appl?"
 
 
 @pytest.mark.filterwarnings("error")
@@ -171,5 +156,5 @@ def test_damaged_exif_of_avif_warns_nobody(tmp_path):
     Image.fromarray(colored_ramp(8)).save(tmp_path / "a.avif", exif=exif)
     content = (tmp_path / "a.avif").read_bytes()
     at = content.index(b"\x0f\x01\x02\0") if b"\x0f\x01\x02\0" in content else content.index(b"\x01\x0f\0\x02")
-    (tmp_path / "a.avif").write_bytes(content[: at + 4] + b"\x7f" * 4 + content[at + 8 :])
-    assert read_codes(tmp_path / "a.avif").metadata.make == ""
+    path = written(tmp_path / "a.avif", content[: at + 4] + b"\x7f" * 4 + content[at + 8 :])
+    assert read_codes(path).metadata.make == ""

@@ -6,12 +6,9 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.image_io.heif_items import decoded_pixels
 from crfnet_core.photograph.image_io.iso_boxes import MOST_META, find_box
-from tests.helpers.refusals import refused
-
-
-def box(kind, *parts):
-    content = b"".join(parts)
-    return struct.pack(">I", 8 + len(content)) + kind + content
+from tests.helpers.crafted_files import box
+from tests.helpers.folders import written
+from tests.helpers.refusals import refusal_of
 
 
 def full(kind, *parts):
@@ -30,10 +27,8 @@ def heif(path, references, side=8192, before=b""):
     owners = struct.pack(">I", len(items)) + b"".join(numbers(item) + b"\1\1" for item in items)
     entries = [box(b"dimg", numbers(item, len(others), *others)) for item, others in references.items()]
     properties = box(b"iprp", box(b"ipco", size), full(b"ipma", owners))
-    path.write_bytes(
-        box(b"ftyp", b"heic", bytes(4), b"mif1") + before + full(b"meta", properties, full(b"iref", *entries))
-    )
-    return path
+    start = box(b"ftyp", b"heic", bytes(4), b"mif1")
+    return written(path, start + before + full(b"meta", properties, full(b"iref", *entries)))
 
 
 def test_an_item_counts_as_often_as_it_is_decoded(tmp_path):
@@ -49,8 +44,7 @@ def test_an_item_counts_as_often_as_it_is_decoded(tmp_path):
 )
 def test_a_heif_file_that_would_be_decoded_for_minutes_is_refused(tmp_path, monkeypatch, references):
     monkeypatch.setattr("pi_heif.open_heif", None)
-    with refused(PhotoError, "damaged"):
-        read_photo(heif(tmp_path / "a.heic", references))
+    assert refusal_of(PhotoError, read_photo, heif(tmp_path / "a.heic", references)).code == "damaged"
 
 
 @pytest.mark.parametrize("before", [box(b"free") * 2000, struct.pack(">I", MOST_META + 1) + b"meta"])
@@ -63,6 +57,5 @@ def test_names_that_are_not_text_are_found_behind_a_long_box(root, tmp_path):
     """pi-heif ends the process at them."""
     content = (root / "tests" / "data" / "heif" / "full8.heic").read_bytes().replace(b"hvc1", b"\xff\xff\xff\xff", 1)
     size = int.from_bytes(content[:4])
-    (tmp_path / "a.heic").write_bytes(content[:size] + box(b"free", bytes(2**21)) + content[size:])
-    with refused(PhotoError, "damaged"):
-        read_photo(tmp_path / "a.heic")
+    path = written(tmp_path / "a.heic", content[:size] + box(b"free", bytes(2**21)) + content[size:])
+    assert refusal_of(PhotoError, read_photo, path).code == "damaged"

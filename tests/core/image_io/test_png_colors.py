@@ -16,7 +16,8 @@ from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
 from crfnet_core.photograph.metadata.icc import DAMAGED
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
-from tests.helpers.refusals import refused
+from tests.helpers.folders import written
+from tests.helpers.refusals import refusal_of
 
 #: A profile in Adobe RGB as PNG holds it.
 ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
@@ -24,8 +25,7 @@ ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
 
 def tags(path, **chunks):
     content = b"".join(png_chunk(name.encode(), content) for name, content in chunks.items())
-    path.write_bytes(png(2, 2, bytes(14), chunks=content))
-    return read_photo(path).metadata.color
+    return read_photo(written(path, png(2, 2, bytes(14), chunks=content))).metadata.color
 
 
 def chrm(primaries):
@@ -63,8 +63,7 @@ def test_chunks_are_believed_by_their_order(tmp_path):
 
 
 def test_an_encoding_for_displays_is_an_answer_too(tmp_path):
-    linear = matrix_profile(ADOBE_RGB, curves=[b"curv" + bytes(8)] * 3)
-    chunk = b"a\0\0" + zlib.compress(linear)
+    chunk = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB, curves=[b"curv" + bytes(8)] * 3))
     assert tags(tmp_path / "a.png", cICP=bytes([1, 13, 0, 1]), iCCP=chunk) == ColorTags(REC709, "", "CICP", "CICP")
 
 
@@ -81,8 +80,7 @@ def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
 
 
 def test_limited_range_is_refused(tmp_path):
-    with refused(PhotoError, "coding_not_read"):
-        tags(tmp_path / "a.png", cICP=bytes([1, 1, 0, 0]))
+    assert refusal_of(PhotoError, tags, tmp_path / "a.png", cICP=bytes([1, 1, 0, 0])).code == "coding_not_read"
 
 
 @pytest.mark.parametrize("chunks", [{}, {"cHRM": bytes(32)}, {"cHRM": bytes(31)}, {"cICP": bytes(3)}, {"sRGB": b""}])
@@ -91,9 +89,8 @@ def test_damaged_chunks_say_nothing(tmp_path, chunks):
 
 
 def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))[:70])
-    header = with_color_chunks(oiio.ImageSpec(), path)
+    whole = png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))
+    header = with_color_chunks(oiio.ImageSpec(), written(tmp_path / "a.png", whole[:70]))
     assert [each.name for each in header.extra_attribs if each.name in ("png:gamma", "chromaticities")] == ["png:gamma"]
 
 
@@ -105,16 +102,14 @@ def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
     chunk = png_chunk(b"eXIf", name + exif.tobytes().removeprefix(b"Exif\0\0"))
     content = png(2, 2, bytes([0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4]))
     at = content.index(b"IDAT" if place == "in front" else b"IEND") - 4
-    (tmp_path / "a.png").write_bytes(content[:at] + chunk + content[at:])
-    values = read_codes(tmp_path / "a.png")
+    values = read_codes(written(tmp_path / "a.png", content[:at] + chunk + content[at:]))
     assert values.codes[..., 0].tolist() == [[3, 1], [4, 2]]
     assert (values.metadata.make, values.metadata.is_turned) == ("Maker", True)
 
 
 def test_a_profile_that_libpng_rejects_is_read(tmp_path):
     """Its length is not a multiple of four."""
-    curve = b"curv" + struct.pack(">II", 0, 0)
-    linear = matrix_profile(REC709, curves=[curve] * 3)
+    linear = matrix_profile(REC709, curves=[b"curv" + struct.pack(">II", 0, 0)] * 3)
     content = struct.pack(">I", len(linear) + 1) + linear[4:] + b"\0"
     chunk = b"a\0\0" + zlib.compress(content)
     assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile", "ICC profile")
@@ -125,6 +120,5 @@ def test_texts_named_like_attributes_change_nothing(tmp_path):
     texts = {b"oiio:BitsPerSample": b"3", b"Orientation": b"6", b"png:palette": b"1", b"png:sRGB": b"0"}
     texts |= {b"dpx:Transfer": b"Logarithmic", b"colorInteropID": b"lin_ap1_scene"}
     chunks = b"".join(png_chunk(b"tEXt", name + b"\0" + value) for name, value in texts.items())
-    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=chunks))
-    values = read_codes(tmp_path / "a.png")
+    values = read_codes(written(tmp_path / "a.png", png(2, 2, bytes(14), chunks=chunks)))
     assert (values.bit_depth, values.metadata.is_turned, values.metadata.color) == (8, False, ColorTags())

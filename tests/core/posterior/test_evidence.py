@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from crfnet_core.photograph.thumbnail import scene_similarities
-from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_fraction
+from crfnet_core.posterior import UNUSUAL, Evidence, Family, ResponseBank, independent_fraction
+from crfnet_core.response.curve import UNIFORM
+from tests.helpers.posteriors import SMALL_BANK
 
 
 def test_likelihoods_are_student_s_t_or_the_odds_that_are_stated_for_a_family(bank):
@@ -39,3 +41,21 @@ def test_scenes_are_recognized_by_the_order_of_their_brightness_and_flat_ones_no
     np.testing.assert_allclose(found, found.T)
     assert (np.diag(found) == 1).all()
     np.testing.assert_array_equal(scene_similarities([np.ones((16, 16))] * 2), np.eye(2))
+
+
+def test_the_packaged_responses_rise_from_0_to_1():
+    bank = ResponseBank.load()
+    assert bank.brightness.dtype == np.float32
+    assert bank.brightness.shape == (len(bank.families), 1024)
+    assert (np.diff(bank.brightness, axis=1) >= 0).all()
+    assert (bank.brightness[:, -1] == 1).all()
+    assert (bank.brightness[:, 0] >= 0).all()
+    assert len(np.unique(bank.brightness, axis=0)) > 0.98 * len(bank.families)
+
+
+def test_weights_and_logarithms_are_those_of_the_curves(bank):
+    powers = np.array([power for family in SMALL_BANK.values() for power in family])
+    assert (bank.weights.shape, bank.log_irradiance.shape) == ((10, 11), (10, 1024))
+    codes = UNIFORM[400:]
+    np.testing.assert_allclose(bank.log_irradiance[:, 400:], np.log2(codes) / powers[:, None], atol=2e-2)
+    assert (bank.log_irradiance >= -16).all()

@@ -12,8 +12,7 @@ from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from crfnet_core.response.transfer_functions import srgb_encode
-from tests.helpers.footage import blurred, log_picture, ordinary_picture, quantized
-from tests.helpers.images import write_image
+from tests.helpers.footage import blurred, log_picture, ordinary_picture, quantized, write_picture
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +117,6 @@ def test_ordinary_pictures_are_left_alone(network, plate):
 
 
 def test_the_linear_that_programs_write_into_every_dpx_is_not_believed(tmp_path):
-    codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
-    photo = read_photo(write_image(tmp_path / "a.dpx", codes, dpx__Transfer="Linear"))
+    photo = read_photo(write_picture(tmp_path / "a.dpx", ordinary_picture(), dpx__Transfer="Linear"))
     assert photo.metadata.color.transfer == ""
     assert file_origin(photo.metadata).encoding is Encoding.FOOTAGE

@@ -30,8 +30,7 @@ def test_the_named_color_space_of_the_aces_config_undoes_the_curve(name):
     config = ocio.Config.CreateFromFile("ocio://studio-config-latest")
     to_linear = config.getProcessor(COLOR_SPACES[name], "ACES2065-1").getDefaultCPUProcessor()
     reflectance = np.array([0.02, 0.18, 0.9, 4.0, 0.001])
-    codes = LOG_CURVES[name](reflectance)
-    linear = np.array([to_linear.applyRGB([code] * 3)[1] for code in codes])
+    linear = np.array([to_linear.applyRGB([code] * 3)[1] for code in LOG_CURVES[name](reflectance)])
     np.testing.assert_allclose(linear / linear[1], reflectance / 0.18, rtol=2e-3)
     assert linear[1] == pytest.approx(0.18, rel=0.02)
 

@@ -5,15 +5,22 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from crfnet_core import Photo, read_photo
 from crfnet_core.colorimetry import REC709
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
-from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES, Kind, Recognition, recognize, refuse_tagged
-from crfnet_core.photograph.recognition.levels import LUMA, Levels, has_few_levels, is_limited_range
+from crfnet_core.photograph.recognition import (
+    COLOR_SPACES,
+    LOG_CURVES,
+    Kind,
+    Levels,
+    Recognition,
+    recognize,
+    refuse_tagged,
+)
+from crfnet_core.photograph.recognition.levels import LUMA, has_few_levels, is_limited_range
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
@@ -111,8 +118,7 @@ def test_limited_range_is_recognized_and_the_full_range_is_not(seed, bits):
     limited = quantized((16 + 219 * full.astype(float)) * 2 ** (bits - 8) / (2**bits - 1), bits)
     assert is_limited_range(Levels.from_pixels(limited))
     assert not is_limited_range(Levels.from_pixels(full))
-    recognition = recognize(Levels.from_pixels(limited), log_probability=0.0)
-    assert recognition.kind is Kind.LIMITED_RANGE
+    assert recognize(Levels.from_pixels(limited), log_probability=0.0).kind is Kind.LIMITED_RANGE
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 235), (16, 255), (30, 220)])
@@ -231,3 +237,29 @@ def test_more_samples_beyond_16_and_235_than_at_them_are_not_limited_range():
     codes = np.random.default_rng(0).uniform(28, 175, 160_000)
     codes[:180] = np.repeat([5, 16, 235, 250], (60, 30, 30, 60))
     assert not is_limited_range(Levels.from_pixels(quantized(np.repeat(codes.reshape(400, 400, 1), 3, axis=2) / 255)))
+
+
+def flat_picture(*shares, size=1000):
+    """Return a picture of gray values, each with a share of the pixels."""
+    values = np.concatenate([np.full(round(share * size * size), value) for value, share in shares])
+    return np.repeat(values.reshape(size, size, 1), 3, axis=2).astype(np.float32)
+
+
+def test_the_picture_is_not_changed_and_a_large_one_is_thinned():
+    pixels = flat_picture((0.25, 0.5), (0.75, 0.5), size=2000)
+    before = pixels.copy()
+    assert Levels.from_pixels(pixels).histogram.sum() <= 3_000_000
+    np.testing.assert_array_equal(pixels, before)
+
+
+def test_several_pictures_count_the_same_whatever_their_size():
+    pictures = flat_picture((0.25, 1.0), size=100), flat_picture((0.75, 1.0), size=500)
+    joint = Levels.joint([Levels.from_pixels(picture) for picture in pictures])
+    assert joint.histogram[:512].sum() / joint.histogram.sum() == pytest.approx(0.5)
+    assert (joint.black, joint.white) == pytest.approx((0.25, 0.75), abs=1 / 1023)
+
+
+def test_all_8_and_10_bit_codes_have_bins_of_their_own():
+    for largest in (255, 1023):
+        pixels = np.repeat((np.arange(largest + 1) / largest).astype(np.float32)[None, :, None], 3, axis=2)
+        assert (Levels.from_pixels(pixels).histogram > 0).sum() == largest + 1

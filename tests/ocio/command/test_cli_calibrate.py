@@ -11,7 +11,7 @@ from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
 from crfnet_core.library import read_calibration
 from crfnet_core.response.metrics import shape_error
-from tests.helpers.folders import listed, tree
+from tests.helpers.folders import listed, tree, written
 from tests.helpers.images import read_image
 from tests.helpers.refusals import refused
 from tests.helpers.schemas import problems_by, read_schema
@@ -25,9 +25,7 @@ def camera(crfnet, stack, look, tmp_path_factory):
     """The output folder of a calibration, and what it printed."""
     folder = tmp_path_factory.mktemp("calibration") / "camera"
     arguments = ("--out", folder, "--name", "eos20d", "--compare", look / "plate.json")
-    done = crfnet("calibrate", *stack, *arguments)
-    assert (done.code, done.err) == (0, "")
-    return folder, done.out
+    return folder, crfnet("calibrate", *stack, *arguments).printed
 
 
 def test_writes_what_it_says(camera, true_response):
@@ -75,9 +73,8 @@ def test_the_config_converts_as_the_lut(camera, stack, oiiotool, tmp_path):
 
 def test_times_from_a_list(crfnet, stack, tmp_path):
     times = ",".join(str(2**index) for index in range(6))
-    done = crfnet("calibrate", *stack, "--times", times, "--out", tmp_path, "--no-sheet", "--json")
-    assert (done.code, done.err) == (0, "")
-    assert [frame["seconds"] for frame in json.loads(done.out)["frames"]] == [1, 2, 4, 8, 16, 32]
+    printed = crfnet("calibrate", *stack, "--times", times, "--out", tmp_path, "--no-sheet", "--json").printed
+    assert [frame["seconds"] for frame in json.loads(printed)["frames"]] == [1, 2, 4, 8, 16, 32]
 
 
 @pytest.mark.parametrize(
@@ -93,9 +90,8 @@ def test_bad_input_is_refused(crfnet, stack, tmp_path, arguments, code):
     ['{"a": 1}', '{"response": {"brightness": [0, 1e999]}}', f'{{"response": {{"brightness": [0, 1{"0" * 400}]}}}}'],
 )
 def test_a_document_without_a_response_is_refused(tmp_path, text):
-    (tmp_path / "other.json").write_text(text)
     with refused(PlateError, "no_response_in_file"):
-        response_to_compare(tmp_path / "other.json")
+        response_to_compare(written(tmp_path / "other.json", text))
 
 
 def test_what_is_there_stays_there(crfnet, stack, tmp_path):
@@ -112,9 +108,7 @@ def raw_folder(crfnet, root, true_response, tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("raw")
     make_pair(folder, light_of(root / "tests" / "data" / "lights" / "interior.exr"), true_response, PairOptions())
-    done = crfnet("calibrate", folder, "--out", folder / "out", "--name", "body")
-    assert (done.code, done.err) == (0, "")
-    return folder, done.out
+    return folder, crfnet("calibrate", folder, "--out", folder / "out", "--name", "body").printed
 
 
 def test_a_raw_file_and_its_jpeg_give_the_same_files(raw_folder, true_response):

@@ -42,16 +42,13 @@ def run(crfnet, fixed_model):
 
     def run_command(command, *arguments):
         model = () if command == "camera" else ("--model", fixed_model)
-        done = crfnet(command, *arguments, *model)
-        assert (done.code, done.err) == (0, "")
-        return done.out
+        return crfnet(command, *arguments, *model).printed
 
     return run_command
 
 
 def test_a_calibration_becomes_a_camera_that_is_shown_and_removed(crfnet, run, stack, tmp_path, library):
-    done = crfnet("calibrate", *stack, "--out", tmp_path / "look", "--name", "eos20d", "--no-sheet")
-    assert (done.code, done.err) == (0, "")
+    assert crfnet("calibrate", *stack, "--out", tmp_path / "look", "--name", "eos20d", "--no-sheet").printed
     calibration = tmp_path / "look" / "eos20d.json"
     out = run("camera", "add", "--from-calibration", calibration, "--name", "20D")
     assert f"Written: {library.folder / '20D.json'}." in out

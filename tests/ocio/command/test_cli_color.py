@@ -7,9 +7,8 @@ import pytest
 
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core import ResponseCurve, read_photo
 from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709
-from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.color_profiles import matrix_profile, profile, write_tagged
 from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed
@@ -63,8 +62,7 @@ def linearized(crfnet, lut_file, tmp_path):
     def run(plate, *arguments):
         out = tmp_path / "linear.exr"
         options = ("--lut", lut_file, "--out", out, "--depth", "float", "--overwrite")
-        done = crfnet("linearize", plate, *options, *arguments)
-        assert (done.code, done.err) == (0, "")
+        assert crfnet("linearize", plate, *options, *arguments).printed
         pixels, spec = read_exr(out)
         return pixels, attributes(spec)
 
@@ -102,8 +100,7 @@ class TestPrimaries:
             assert "chromaticities" not in found
 
     def test_what_is_given_outweighs_the_tag(self, tagged, linearized):
-        plate = tagged("a.tif", matrix_profile(ADOBE_RGB))
-        pixels, found = linearized(plate, "--primaries", "p3")
+        pixels, found = linearized(tagged("a.tif", matrix_profile(ADOBE_RGB)), "--primaries", "p3")
         np.testing.assert_allclose(pixels, to_space(LIGHT, "Display P3", "sRGB"), atol=5e-4)
         assert (found["crfnet:primaries"], found["crfnet:primariesSource"]) == ("Display P3", "as given")
 
@@ -139,8 +136,7 @@ class TestPrimaries:
         other = matrix_profile(REC709) if "Rec.709" in words else pq
         for number, icc in enumerate((matrix_profile(DISPLAY_P3), matrix_profile(DISPLAY_P3), other), 1):
             tagged(f"shot.{number}.tif", icc)
-        out = tmp_path / "l.%d.exr"
-        done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
+        done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", tmp_path / "l.%d.exr")
         assert (done.refusal, f"shot.3.tif: {words}" in done.err) == ("frames_failed", True)
         assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
 
@@ -154,8 +150,7 @@ class TestConfig:
             pixels = read_image(plate, kind="uint8")
             photo = write_tagged(tmp_path / "shot.png", pixels, matrix_profile(DISPLAY_P3))
             out = ("--out", tmp_path / "look", "--no-sheet", "--overwrite", "--depth", "float")
-            done = crfnet("estimate", photo, *out, "--model", fixed_model, *arguments)
-            assert (done.code, done.err) == (0, "")
+            assert crfnet("estimate", photo, *out, "--model", fixed_model, *arguments).printed
             return tmp_path / "look"
 
         return run

@@ -20,9 +20,8 @@ def folder(tmp_path):
 
 def test_an_estimate_goes_into_a_copy_of_a_studios_config(crfnet, look, plate, oiiotool, linear, tmp_path, tolerance):
     out = tmp_path / "show"
-    done = crfnet("config", "add", "--base", STUDIO, "--out", out, look)
-    assert (done.code, done.err) == (0, "")
-    assert done.out.splitlines()[:2] == [f"Written: {out / 'config.ocio'}", "CRF plate: plate.spi1d"]
+    printed = crfnet("config", "add", "--base", STUDIO, "--out", out, look).printed
+    assert printed.splitlines()[:2] == [f"Written: {out / 'config.ocio'}", "CRF plate: plate.spi1d"]
     convert = ("--colorconvert", "CRF plate", "lin_rec709_scene")
     oiiotool("--colorconfig", out / "config.ocio", plate, *convert, "-d", "float", "-o", tmp_path / "a.exr")
     np.testing.assert_allclose(read_image(tmp_path / "a.exr"), linear, atol=tolerance.plate)
@@ -32,10 +31,8 @@ def test_an_estimate_goes_into_a_copy_of_a_studios_config(crfnet, look, plate, o
 
 
 def test_add_and_list(crfnet, folder, tmp_path):
-    done = crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "show", folder, folder / ".")
-    assert done.code == 0
-    listing = crfnet("config", "list", tmp_path / "show")
-    assert listing.out.splitlines()[0] == f"{NAME}: plate01.spi1d, +1 stops"
+    assert crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "show", folder, folder / ".").code == 0
+    assert crfnet("config", "list", tmp_path / "show").out.splitlines()[0] == f"{NAME}: plate01.spi1d, +1 stops"
     document = json.loads(crfnet("config", "list", tmp_path / "show", "--json").out)
     assert [plate["exposure"] for plate in document["plates"]] == [1]
     assert list(document["plates"][0]["rules"].values()) == [NAME, "Linear Rec.709 (sRGB)"]

@@ -4,31 +4,23 @@ import shutil
 import sys
 from pathlib import Path
 
-import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet.configs.file_rules import FAMILY
 from crfnet.defaults import ESTIMATES
 from crfnet.output_files import folded
+from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
-from tests.helpers.records import records_in
+from tests.helpers.records import plates_in, records_in
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
-
-
-def configured(config):
-    """The photographs in a config, by the names of their colour spaces."""
-    spaces = OCIO.Config.CreateFromFile(str(config)).getColorSpaces()
-    return [space.getName().removeprefix("CRF ") for space in spaces if space.getFamily() == FAMILY]
 
 
 def test_names_of_one_alias_are_two_photographs(estimate, photographs, tmp_path):
     for name in ("a-b.jpg", "a_b.jpg", "a b.jpg"):
         shutil.copy(photographs / "a.jpg", photographs / name)
     assert estimate(photographs, *QUICK).code == 0
-    config = tmp_path / "out" / "config.ocio"
-    assert configured(config) == ["a b", "a-b", "a", "a_b", "b"]
-    assert OCIO.Config.CreateFromFile(str(config)).getColorSpace("crf_a_b").getName() == "CRF a_b"
+    assert plates_in(tmp_path / "out") == ["a b", "a-b", "a", "a_b", "b"]
+    assert loaded(tmp_path / "out" / "config.ocio").getColorSpace("crf_a_b").getName() == "CRF a_b"
 
 
 @pytest.mark.parametrize("name", ["a.jpeg", "A.jpg"])
@@ -40,7 +32,7 @@ def test_two_of_one_name_get_files_of_their_own(estimate, photographs, tmp_path,
         assert estimate(photographs / "a.jpg", photographs / name, *QUICK).code == 0
         luts = {Path(record["photograph"]).name: record["lut"] for record in records_in(tmp_path / "out")}
         assert (luts["a.jpg"], luts[name].casefold()) == ("a.spi1d", "a_2.spi1d")
-        assert sorted(map(str.casefold, configured(tmp_path / "out" / "config.ocio"))) == ["a", "a_2"]
+        assert sorted(map(str.casefold, plates_in(tmp_path / "out"))) == ["a", "a_2"]
 
 
 def test_names_that_differ_in_case_or_in_the_form_of_an_accent_only_are_one():
@@ -61,8 +53,7 @@ def test_a_photograph_of_a_later_run_takes_no_files_of_another(estimate, photogr
     before = tree(tmp_path / "out")
     notes = estimate(photographs / "day 2", *QUICK).out
     assert "\nnote: no file rule leads to CRF a_2, CRF a: several plates " in notes
-    after = tree(tmp_path / "out")
-    assert after["a.spi1d"] == before["a.spi1d"]
+    assert tree(tmp_path / "out")["a.spi1d"] == before["a.spi1d"]
     assert [record["lut"] for record in records_in(tmp_path / "out")] == ["a.spi1d", "a_2.spi1d"]
 
 
@@ -89,7 +80,7 @@ def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
         errors = {record["photograph"]: record["error"] for record in records_in(tmp_path / "out")}
         assert [bool(errors[name]) for name in sorted(errors)] == [True, True, False, True, False, False]
         assert errors[f"{photographs}/\\udcff.jpg"].startswith(f"{photographs}/?.jpg: ")
-    assert configured(tmp_path / "out" / "config.ocio") == ["a", "b"]
+    assert plates_in(tmp_path / "out") == ["a", "b"]
 
 
 @pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85"])
@@ -117,9 +108,8 @@ def test_files_that_are_gone_with_their_photographs_are_in_no_config(estimate, p
         shutil.rmtree(folder / "day 2")
     for path in (photographs / "b.JPG", *(tmp_path / "out").glob("b.*")):
         path.unlink()
-    done = estimate(photographs, *QUICK)
-    assert (done.code, done.err) == (0, "")
-    assert configured(tmp_path / "out" / "config.ocio") == ["a"]
+    assert estimate(photographs, *QUICK).printed
+    assert plates_in(tmp_path / "out") == ["a"]
     assert not (tmp_path / "out" / "day 2").exists()
 
 
@@ -130,8 +120,7 @@ def test_the_output_folder_and_hidden_files_are_no_photographs(crfnet, fixed_mod
     out = photographs / "look"
     arguments = ("estimate", photographs, "--each", "--no-linear", "--workers", "1", "--model", fixed_model)
     for _ in range(2):
-        done = crfnet(*arguments, "--out", out)
-        assert (done.code, done.err) == (0, "")
+        assert crfnet(*arguments, "--out", out).printed
         assert len(records_in(out)) == 3
     assert "a_sheet.png" in listed(out)
 
@@ -140,8 +129,7 @@ def test_photographs_in_the_output_folder_itself_are_searched_and_sheets_are_not
     shutil.copy(photographs / "a.jpg", photographs / "my_sheet.png")
     arguments = ("estimate", photographs, "--out", photographs, "--model", fixed_model, "--each", "--workers", "1")
     for _ in range(2):
-        done = crfnet(*arguments, "--no-linear")
-        assert (done.code, done.err) == (0, "")
+        assert crfnet(*arguments, "--no-linear").printed
     names = [Path(record["photograph"]).name for record in records_in(photographs)]
     assert names == ["a.jpg", "b.JPG", "a.jpg", "my_sheet.png"]
 

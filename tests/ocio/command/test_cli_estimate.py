@@ -2,6 +2,7 @@ import json
 import os
 import shutil
 from pathlib import Path, PurePosixPath
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -9,10 +10,9 @@ import pytest
 from crfnet import pipeline
 from crfnet.cli.commands import printing
 from crfnet.luts.files import WRITERS, read_lut
-from crfnet_core import staging
-from crfnet_core.response.curve import ResponseCurve
+from crfnet_core import ResponseCurve, staging
 from tests.helpers.configs import loaded
-from tests.helpers.folders import listed, tree
+from tests.helpers.folders import listed, tree, written
 from tests.helpers.images import write_image
 from tests.helpers.looks import write_look
 
@@ -34,19 +34,16 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
     assert found["photographs"] == [
         {"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8, "has_gain_map": False}
     ]
-    assert len(found["response"]["brightness"]) == 1024
-    assert len(found["windows"]) == 10
+    assert (len(found["response"]["brightness"]), len(found["windows"])) == (1024, 10)
     assert found["files"]["sheet"] is None
     assert found["color_space"] == "CRF plate"
 
 
 @pytest.mark.parametrize("name", ["any", "mine.json"])
 def test_the_prior_can_be_chosen(estimate, plate, tmp_path, name):
-    own = tmp_path / "mine.json"
-    own.write_text('{"shares": {"phone": 2e-1, "film": 1}, "evidence": 0.5}')
-    done = estimate(plate, "--prior", own if name == own.name else name)
-    assert (done.code, done.err) == (0, "")
-    assert f"\nPrior: {Path(name).stem}; " in done.out
+    own = written(tmp_path / "mine.json", '{"shares": {"phone": 2e-1, "film": 1}, "evidence": 0.5}')
+    printed = estimate(plate, "--prior", own if name == own.name else name).printed
+    assert f"\nPrior: {Path(name).stem}; " in printed
     found = json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))
     assert (found["families"]["camera"] < 1e-200) == (name == own.name)
 
@@ -78,18 +75,14 @@ def test_writes_nothing_outside_the_output_folder(crfnet, plate, fixed_model, tm
 
 
 def test_several_photographs_make_one_response(estimate, plate, tmp_path):
-    other = shutil.copy(plate, tmp_path / "other.jpg")
-    out = estimate(plate, other).out
-    names = set(listed(tmp_path / "out"))
-    assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
+    out = estimate(plate, shutil.copy(plate, tmp_path / "other.jpg")).out
+    assert set(listed(tmp_path / "out")) == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
     assert " of 20 analyzed windows agree" in out
 
 
 @pytest.mark.parametrize("name", ["a\\b.jpg", f"{'写' * 80}.jpg", "a$b%20#1.jpg", "q'u\"o.jpg", "[1,  2].jpg"])
 def test_any_file_name_works(estimate, plate, tmp_path, name):
-    photo = shutil.copy(plate, tmp_path / name)
-    done = estimate(photo)
-    assert (done.code, done.err) == (0, "")
+    assert estimate(shutil.copy(plate, tmp_path / name)).printed
     assert len(listed(tmp_path / "out")) == len(FILES) - 1
 
 
@@ -101,38 +94,23 @@ def test_what_is_there_is_replaced_only_when_asked(estimate, plate, out):
     assert "LUT_1D_SIZE 4081" in (out / "plate.cube").read_text()
 
 
-def test_a_photograph_is_never_replaced(crfnet, plate, fixed_model, tmp_path):
-    for name in ("a.png", "a_sheet.png"):
-        shutil.copy(plate, tmp_path / name)
-    before = tree(tmp_path)
-    options = ("--out", tmp_path, "--overwrite", "--model", fixed_model)
-    done = crfnet("estimate", tmp_path / "a.png", tmp_path / "a_sheet.png", *options)
-    assert done.refusal == "replaces_photograph"
-    assert tree(tmp_path) == before
-
-
-def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
-    (tmp_path / "b").mkdir()
-    other = shutil.copy(plate, tmp_path / "b")
-    assert estimate(plate, other).refusal == "one_name"
-
-
 def test_a_photograph_that_is_given_twice_counts_once(estimate, plate, monkeypatch):
     monkeypatch.chdir(plate.parent)
     done = estimate(plate, plate.name, plate, "--no-linear", "--json")
     assert [photo["name"] for photo in json.loads(done.out)["estimates"][0]["photographs"]] == ["plate.jpg"]
 
 
-@pytest.mark.parametrize(("part", "words"), [("find_spec", "pip install"), ("_font_folder", "set TMPDIR")])
-def test_says_how_to_get_the_sheet(crfnet, plate, fixed_model, tmp_path, monkeypatch, part, words):
+@pytest.mark.parametrize(
+    ("part", "answer", "words"),
+    [
+        ("find_spec", [None], "pip install"),
+        ("_font_folder", FileNotFoundError(2, "No usable temporary directory found in ['/tmp']"), "set TMPDIR"),
+    ],
+)
+def test_says_how_to_get_the_sheet(crfnet, plate, fixed_model, tmp_path, monkeypatch, part, answer, words):
     """Without matplotlib, and on a disk to which nothing can be written but the results."""
-
-    def absent(*_):
-        if part == "_font_folder":
-            raise FileNotFoundError(2, "No usable temporary directory found in ['/tmp']")
-
     monkeypatch.delenv("MPLCONFIGDIR", raising=False)
-    monkeypatch.setattr(printing, part, absent)
+    monkeypatch.setattr(printing, part, Mock(side_effect=answer))
     done = crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model)
     assert (done.code, words in done.err, done.err.count("\n")) == (0, True, 1)
     assert not (tmp_path / "plate_sheet.png").exists()
@@ -148,16 +126,14 @@ def test_the_user_may_state_the_device(estimate, plate, device, words):
 
 
 def test_color_spaces_that_a_replaced_config_no_longer_has_are_named(estimate, crfnet, plate, tmp_path):
-    other, out = tmp_path / "other.jpg", tmp_path / "out"
-    other.write_bytes(plate.read_bytes())
+    other, out = shutil.copy(plate, tmp_path / "other.jpg"), tmp_path / "out"
     assert "was replaced" not in estimate(plate, "--no-linear").out
     assert "was replaced" not in estimate(plate, "--no-linear", "--overwrite").out
     words = 'Warning: config.ocio was replaced and no longer has "CRF plate"; '
     assert words in estimate(other, "--no-linear", "--overwrite").out
     both = tmp_path / "both"
     assert crfnet("config", "add", "--base", out / "config.ocio", "--out", both, out / "plate.json").code == 0
-    config = loaded(both / "config.ocio")
-    assert {"CRF plate", "CRF other"} < set(config.getColorSpaceNames())
+    assert {"CRF plate", "CRF other"} < set(loaded(both / "config.ocio").getColorSpaceNames())
     printed = estimate(plate, "--no-linear", "--overwrite", "--json").out
     assert json.loads(printed)["dropped"] == ["CRF other"]
 
@@ -186,6 +162,5 @@ def test_a_color_space_that_another_process_has_just_written_is_named_as_lost(es
 @pytest.mark.parametrize("content", [b"no config", b"ocio_profile_version: \xe4\xff"])
 def test_a_config_that_nobody_can_read_is_replaced(estimate, plate, out, content):
     (out / "config.ocio").write_bytes(content)
-    done = estimate(plate, "--no-linear", "--overwrite")
-    assert (done.code, done.err) == (0, "")
+    assert estimate(plate, "--no-linear", "--overwrite").printed
     assert "CRF plate" in loaded(out / "config.ocio").getColorSpaceNames()

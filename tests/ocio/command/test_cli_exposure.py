@@ -9,7 +9,7 @@ from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded
-from tests.helpers.folders import listed
+from tests.helpers.folders import tree
 from tests.helpers.images import read_image
 from tests.helpers.plates import attributes, read_exr
 
@@ -34,8 +34,7 @@ class TestExposure:
         assert found["stops"] == found["gray_stops"]
         header = attributes(read_exr(tmp_path / "out" / "plate_linear.exr")[1])
         assert header["crfnet:exposure"] == pytest.approx(found["stops"], abs=1e-5)
-        config = loaded(tmp_path / "out" / "config.ocio")
-        gray = converted(config, "CRF plate", "scene_linear", [[0.4614] * 3])
+        gray = converted(loaded(tmp_path / "out" / "config.ocio"), "CRF plate", "scene_linear", [[0.4614] * 3])
         np.testing.assert_allclose(gray, 0.18, atol=1e-5)
 
     def test_a_picked_gray_is_at_018(self, crfnet, plate, lut_file, tmp_path):
@@ -77,10 +76,10 @@ class TestResuming:
     def test_a_sequence_is_not_mixed(self, crfnet, frames, look, arguments, difference):
         same = ("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d", "--out", frames / "l.####.exr")
         assert crfnet(*same, "--frames", "1-2").code == 0
-        before = {name: (frames / name).read_bytes() for name in listed(frames)}
+        before = tree(frames)
         done = crfnet(*same, *arguments)
         assert (done.refusal, difference in done.err) == ("finished_differs", True)
         assert done.err.endswith("; or add --overwrite\n")
-        assert {name: (frames / name).read_bytes() for name in listed(frames)} == before
+        assert tree(frames) == before
         assert crfnet(*same, *arguments, "--overwrite").code == 0
         assert crfnet(*same, *arguments).code == 0

@@ -3,16 +3,11 @@
 import json
 import shutil
 
-import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from tests.helpers.footage import log_picture, ordinary_picture
-from tests.helpers.images import read_image, write_image
-
-
-def as_file(path, pixels, **attributes):
-    return write_image(path, np.rint(pixels * 255).astype(np.uint8), **attributes)
+from tests.helpers.footage import log_picture, ordinary_picture, write_picture
+from tests.helpers.images import read_image
 
 
 @pytest.mark.parametrize(
@@ -24,7 +19,7 @@ def as_file(path, pixels, **attributes):
     ids=["log", "limited"],
 )
 def test_other_pictures_are_answered_with_what_helps(crfnet, tmp_path, pixels, kind, words, curves):
-    path = as_file(tmp_path / "a.png", pixels, Make="Panasonic", Model="DC-S5")
+    path = write_picture(tmp_path / "a.png", pixels, Make="Panasonic", Model="DC-S5")
     done = crfnet("estimate", path, "--out", tmp_path / "look", "--no-sheet")
     assert (done.code, words in done.out) == (0, True)
     found = json.loads((tmp_path / "look" / "a.json").read_text(encoding="utf-8"))
@@ -45,7 +40,7 @@ def test_other_pictures_are_answered_with_what_helps(crfnet, tmp_path, pixels, k
 def test_a_frame_that_calls_itself_log_or_linear_is_refused_and_nothing_is_written(
     crfnet, fixed_model, tmp_path, command, name, tag, code
 ):
-    path = as_file(tmp_path / name, ordinary_picture(), **tag)
+    path = write_picture(tmp_path / name, ordinary_picture(), **tag)
     out = tmp_path / ("look" if command == "estimate" else "linear.exr")
     arguments = (command, path, "--out", out, "--model", fixed_model)
     assert crfnet(*arguments).refusal == code
@@ -53,10 +48,8 @@ def test_a_frame_that_calls_itself_log_or_linear_is_refused_and_nothing_is_writt
     assert crfnet(*arguments, "--ignore-metadata").code == 0
 
 
-def test_a_phones_heic_gives_a_linear_plate(crfnet, fixed_model, root, tmp_path):
+def test_a_phones_heic_gives_a_linear_plate(crfnet, look, root, tmp_path):
     """The test files are smaller than a window, so the plate is made with a LUT."""
-    crfnet("estimate", root / "tests/data/plate.jpg", "--out", tmp_path, "--no-sheet", "--model", fixed_model)
-    shutil.copy(root / "tests/data/heif/phone.heic", tmp_path / "IMG_0001.HEIC")
-    plate, lut = tmp_path / "IMG_0001.HEIC", tmp_path / "plate.spi1d"
-    assert crfnet("linearize", plate, "--lut", lut, "--out", tmp_path / "linear.exr").code == 0
+    plate = shutil.copy(root / "tests/data/heif/phone.heic", tmp_path / "IMG_0001.HEIC")
+    assert crfnet("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "linear.exr").code == 0
     assert read_image(tmp_path / "linear.exr").shape == (64, 48, 3)

@@ -14,8 +14,7 @@ def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
     assert done.code == 0
     assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
     assert all(words in done.out for words in ("\nPrior: camera; metadata: ", "4 frames", "Missing frames: 4."))
-    pixels = [read_image(out / f"l.{number:04d}.exr") for number in (1, 5)]
-    np.testing.assert_array_equal(*pixels)
+    np.testing.assert_array_equal(*[read_image(out / f"l.{number:04d}.exr") for number in (1, 5)])
 
 
 def test_goes_on_where_it_stopped(crfnet, look, frames):
@@ -38,24 +37,15 @@ def test_says_what_was_left_alone(crfnet, look, plate, tmp_path):
     assert [line.partition(":")[0] for line in light] == ["Primaries", "Exposure"]
 
 
-def test_an_untagged_exr_is_linearized_only_if_the_user_says_that_it_is_encoded(crfnet, look, tmp_path):
-    values = np.full((4, 4, 3), 0.5, np.float32)
-    plate = write_image(tmp_path / "plate.exr", values)
-    arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "linear.exr")
-    assert crfnet(*arguments).refusal == "exr_untagged"
-    assert not (tmp_path / "linear.exr").exists()
-    assert crfnet(*arguments, "--encoded").code == 0
-    assert read_image(tmp_path / "linear.exr").max() < 0.5
-
-
-def test_the_share_of_encoded_values_that_the_lut_clips_is_said(crfnet, look, tmp_path):
+def test_an_exr_is_linearized_as_encoded_if_the_user_says_so_and_what_the_lut_clips_is_said(crfnet, look, tmp_path):
     values = np.full((4, 4, 3), 0.5, np.float32)
     values[0], values[1, 0] = 1.5, -1
     plate = write_image(tmp_path / "plate.exr", values)
     write_image(tmp_path / "inside.exr", values.clip(0, 1))
     arguments = ("--lut", look / "plate.spi1d", "--encoded", "--out")
-    out = crfnet("linearize", plate, *arguments, tmp_path / "a.exr").out
+    out = crfnet("linearize", plate, *arguments, tmp_path / "a.exr").printed
     assert "Warning: 31 % of the values are outside the LUT" in out
+    assert read_image(tmp_path / "a.exr")[1:].max() < 0.5
     document = json.loads(crfnet("linearize", plate, *arguments, tmp_path / "b.exr", "--json").out)
     assert document["clipped"] == 15 / 48
     assert "31 % of the values" in crfnet("linearize", plate, *arguments, tmp_path / "each", "--each").out

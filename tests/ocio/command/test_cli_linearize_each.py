@@ -27,8 +27,7 @@ def linearize(crfnet, fixed_model, tmp_path):
 
 
 def test_a_lut_holds_for_all(linearize, photographs, look, linear, tmp_path):
-    done = linearize(photographs, "--lut", look / "plate.spi1d")
-    assert (done.code, done.err) == (0, "")
+    assert linearize(photographs, "--lut", look / "plate.spi1d").printed
     assert listed(tmp_path / "out") == ["a.exr", "b.exr", "day 2", PLATES]
     np.testing.assert_array_equal(read_image(tmp_path / "out" / "day 2" / "a.exr"), linear)
     assert [record["linear"] for record in records_in(tmp_path / "out")] == ["a.exr", "b.exr", "day 2/a.exr"]
@@ -44,8 +43,7 @@ def test_each_has_its_own_response(linearize, photographs, look, linear, tmp_pat
 
 
 def test_a_camera_holds_for_all(linearize, photographs, tmp_path):
-    done = linearize(photographs, "--camera", "Canon EOS 20D")
-    assert (done.code, done.err) == (0, "")
+    assert linearize(photographs, "--camera", "Canon EOS 20D").printed
     records = records_in(tmp_path / "out")
     assert len({tuple(record["weights"]) for record in records}) == 1
     assert [record["summary"].partition(":")[0] for record in records] == ["a.jpg", "b.JPG", "a.jpg"]

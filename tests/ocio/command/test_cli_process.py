@@ -15,10 +15,9 @@ import pytest
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.cli.commands import printing
 from tests.helpers.folders import listed, tree
-from tests.helpers.processes import start_interruptible
+from tests.helpers.processes import ran, start_interruptible
 
 CRFNET = Path(sys.executable).with_name("crfnet")
-
 
 #: Run the command, which says "ready" and waits where it would write the config.
 WAITING = (
@@ -38,19 +37,17 @@ def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
     photo = tmp_path / os.fsdecode(b"\xff.jpg")
     shutil.copy(plate, photo)
     command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = ran(*command)
     assert done.returncode == BAD_INPUT
     assert done.stderr == "crfnet: error: a file's name is not valid Unicode; rename it\n"
     assert not (tmp_path / "out").exists()
     environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    done = ran(*command, env=environment)
     assert done.stderr.endswith("is not text in ascii, which the environment states; set LC_ALL=C.UTF-8\n")
 
 
 def test_a_reader_that_leaves_is_no_error_message(look):
-    command = f"'{CRFNET}' info '{look / 'plate.spi1d'}' | true"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert done.stderr == ""
+    assert ran(f"'{CRFNET}' info '{look / 'plate.spi1d'}' | true", shell=True).stderr == ""
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
@@ -64,8 +61,7 @@ def test_a_signal_leaves_nothing_and_no_traceback(arguments, tmp_path, name):
         process.send_signal(number)
         process.send_signal(number)
         _, err = process.communicate(timeout=20)
-    assert process.returncode == 128 + number
-    assert err == "crfnet: interrupted\n"
+    assert (process.returncode, err) == (128 + number, "crfnet: interrupted\n")
     assert not (tmp_path / "out").exists()
 
 
@@ -90,17 +86,15 @@ def test_control_c_during_the_imports_leaves_no_traceback(look):
 def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
     if "full" in closed and not Path("/dev/full").exists():
         pytest.skip("this system has no /dev/full")
-    known = subprocess.run(f"'{CRFNET}' info '{look / 'plate.spi1d'}' {closed}", shell=True, check=False)
-    assert known.returncode == 0
-    absent = subprocess.run(f"'{CRFNET}' info '{tmp_path / 'none.spi1d'}' {closed}", shell=True, check=False)
-    assert absent.returncode == BAD_INPUT
+    for path, code in ((look / "plate.spi1d", 0), (tmp_path / "none.spi1d", BAD_INPUT)):
+        assert subprocess.run(f"'{CRFNET}' info '{path}' {closed}", shell=True, check=False).returncode == code
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
 @pytest.mark.parametrize("command", ["--version >/dev/full", "--help >/dev/full", "info LUT --json >&-"])
 def test_a_document_that_nothing_takes_is_an_error(look, command):
     command = command.replace("LUT", f"'{look / 'plate.spi1d'}'")
-    done = subprocess.run(f"'{CRFNET}' {command}", shell=True, capture_output=True, text=True, check=False)
+    done = ran(f"'{CRFNET}' {command}", shell=True)
     assert (done.returncode, done.stderr.count("\n")) == (BAD_INPUT, 1)
 
 
@@ -125,8 +119,7 @@ def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, arguments,
 def test_variables_for_other_programs_do_not_matter(look, arguments, tmp_path):
     """A backend that matplotlib does not know, and what a studio hides of its configs."""
     variables = {"MPLBACKEND": "nonsense", "OCIO_ACTIVE_VIEWS": "ACES", "OCIO_INACTIVE_COLORSPACES": "ACES"}
-    command = [CRFNET, *arguments, "--depth", "float"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | variables)
+    done = ran(CRFNET, *arguments, "--depth", "float", env=os.environ | variables)
     assert (done.returncode, done.stderr) == (0, "")
     assert tree(tmp_path / "out") == tree(look)
 
@@ -137,8 +130,7 @@ def test_an_estimate_gives_no_warning_of_python_and_leaves_the_home_empty(argume
     names = ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME")
     environment = {name: value for name, value in os.environ.items() if name not in names}
     environment["HOME"] = str(tmp_path / "home")
-    command = [sys.executable, "-W", "error", "-m", "crfnet", *arguments]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = ran(sys.executable, "-W", "error", "-m", "crfnet", *arguments, env=environment)
     assert (done.returncode, done.stderr) == (0, "")
     assert listed(tmp_path / "home") == []
     assert "plate_sheet.png" in listed(tmp_path / "out")
@@ -157,7 +149,7 @@ def test_works_without_shared_memory(photographs, look, fixed_model, tmp_path, c
     model = ("--model", fixed_model, "--no-sheet", "--no-linear")
     options = model if command == "estimate" else ("--lut", look / "plate.spi1d")
     arguments = [command, photographs, "--each", "--workers", "2", "--out", tmp_path / "out", *options]
-    done = subprocess.run([*WITHOUT_DEVICES, CRFNET, *arguments], capture_output=True, text=True, check=False)
+    done = ran(*WITHOUT_DEVICES, CRFNET, *arguments)
     assert (done.returncode, done.stderr) == (0, "")
     assert len(list((tmp_path / "out").rglob("*.exr" if command == "linearize" else "*.spi1d"))) == 3
 

@@ -1,5 +1,6 @@
 import shlex
 import shutil
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -27,7 +28,9 @@ def inputs(plate, tmp_path, monkeypatch):
     write_image(folder / "linear.exr", np.zeros((100, 100, 3), np.float16))
     write_lut(folder / "good.spi1d", inverse_response_lut(ResponseCurve.gamma()))
     (folder / "bad.spi1d").write_text("Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n1\n0\n}\n")
+    shutil.copy(plate, "plate_sheet.png")
     (folder / "bad_model").mkdir()
+    shutil.copy(plate, "bad_model/plate.jpg")
     (folder / "bad_model" / "model.json").write_text("{}")
     (folder / "file").write_text("in the way")
     (folder / "loop.jpg").symlink_to("loop.jpg")
@@ -49,10 +52,17 @@ BAD = [
     ("prior_not_json", "estimate plate.jpg --prior file"),
     ("not_a_folder", "estimate plate.jpg --out file"),
     ("file_exists", "estimate plate.jpg --out dangling"),
+    ("replaces_photograph", "estimate plate.jpg plate_sheet.png --out . --overwrite"),
+    ("one_name", "estimate plate.jpg bad_model/plate.jpg"),
+    ("no_such_frames", "estimate none.%04d.jpg --frames 1-9"),
+    ("bad_frames", "estimate none.%04d.jpg --frames a"),
+    ("single_file", "estimate plate.jpg --frames 1001"),
+    ("frames_of_each", "estimate plate.jpg --frames 1001 --each"),
     ("each_option_alone", "estimate plate.jpg --workers 2"),
     ("usage", "estimate plate.jpg --depth double"),
     ("no_such_plate", "linearize none.jpg --lut good.spi1d"),
     ("no_such_plate", "linearize loop.jpg --lut good.spi1d"),
+    ("exr_untagged", "linearize linear.exr --lut good.spi1d"),
     ("no_such_frames", "linearize none.%04d.jpg --lut good.spi1d"),
     ("folder_without_sequence", "linearize . --lut good.spi1d"),
     ("lut_unreadable", "linearize plate.jpg --lut none.spi1d"),
@@ -137,19 +147,11 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
     ],
 )
 def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, problem, code, line):
-    def fail(*arguments, **options):
-        raise problem
-
-    monkeypatch.setattr(estimates, "estimate_response", fail)
+    monkeypatch.setattr(estimates, "estimate_response", Mock(side_effect=problem))
     done = estimate(plate)
-    assert done.code == code
-    assert done.err.startswith(line)
-    assert done.err.count("\n") == 1
+    assert (done.code, done.err.startswith(line), done.err.count("\n")) == (code, True, 1)
 
 
 def test_the_name_of_the_linear_plate_is_checked_before_the_estimate(crfnet, plate, fixed_model, tmp_path, monkeypatch):
-    def fail(*arguments, **options):
-        raise AssertionError("estimated although nothing can be written")
-
-    monkeypatch.setattr(estimates, "estimate_response", fail)
+    monkeypatch.setattr(estimates, "estimate_response", None)
     assert crfnet("linearize", plate, "--out", tmp_path / "plate.png", "--model", fixed_model).refusal == "not_exr"

@@ -6,6 +6,7 @@ import pytest
 from crfnet.configs.portable import portable_config
 from crfnet.luts.files import write_lut
 from tests.helpers.configs import LUT
+from tests.helpers.folders import written
 from tests.helpers.looks import OTHER_LUT, write_look
 
 
@@ -37,6 +38,4 @@ def studio(tmp_path):
     rules = config.getFileRules()
     rules.insertRule(0, "scans", "film", r".*\.dpx")
     config.setFileRules(rules)
-    path = folder / "show.ocio"
-    path.write_text("# the show's own config\n" + config.serialize())
-    return path
+    return written(folder / "show.ocio", "# the show's own config\n" + config.serialize())

@@ -19,8 +19,8 @@ from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import LUT, SPACE, converted, loaded
-from tests.helpers.folders import listed
-from tests.helpers.refusals import refused
+from tests.helpers.folders import listed, written
+from tests.helpers.refusals import refusal_of, refused
 
 PORTABLE = portable_config([]).serialize()
 
@@ -53,8 +53,7 @@ class TestWriting:
         np.testing.assert_allclose(LUT.apply(back), LUT.apply(values), atol=tolerance.plate)
 
     def test_it_is_replaced_only_when_asked(self, folder):
-        path = folder / "config.ocio"
-        path.write_text("mine")
+        path = written(folder / "config.ocio", "mine")
         with refused(ConfigError, "exists"):
             write_config(path, portable_config([SPACE]), check={"CRF plate01": LUT})
         assert path.read_text() == "mine"
@@ -95,7 +94,7 @@ class TestLoading:
             config = portable_config([SPACE])
             steps = OCIO.GroupTransform([OCIO.FileTransform(source)])
             config.addColorSpace(OCIO.ColorSpace(name="lut", **{direction: steps}))
-            path.write_text(config.serialize())
+            written(path, config.serialize())
             with refused(ConfigError, "config_reads_device") if source == os.devnull else nullcontext():
                 load_config(path)
 
@@ -117,21 +116,18 @@ class TestLoading:
     )
     def test_a_file_that_is_no_config_or_not_utf8_or_too_large_or_multiplies_is_refused(self, tmp_path, content, code):
         """Aliases and variables before they do: nine levels of nine make a kilobyte take gigabytes."""
-        (tmp_path / "config.ocio").write_bytes(content)
-        with refused(ConfigError, code):
-            load_config(tmp_path / "config.ocio")
+        assert refusal_of(ConfigError, load_config, written(tmp_path / "config.ocio", content)).code == code
 
     def test_a_few_aliases_and_stars_in_texts_are_accepted(self, tmp_path):
-        text = portable_config([]).serialize().replace("name: crfnet", "name: &title crfnet")
+        text = PORTABLE.replace("name: crfnet", "name: &title crfnet")
         text = "# ***\n" * 9 + text.replace("description: Camera", "description: 2 * 3 * x *.exr Camera", 1)
-        (tmp_path / "config.ocio").write_text(text.replace("family: Data", "family: *title"))
-        assert load_config(tmp_path / "config.ocio").getColorSpace("Non-Color").getFamily() == "crfnet"
+        path = written(tmp_path / "config.ocio", text.replace("family: Data", "family: *title"))
+        assert load_config(path).getColorSpace("Non-Color").getFamily() == "crfnet"
 
     def test_variables_of_variables_are_accepted(self, tmp_path):
-        text = portable_config([]).serialize()
         declared = 'environment: {SHOW: a, ROOT: /shows/$SHOW, SHOT: s1, SHOT_ROOT: "$ROOT/${SHOT}", LOOP: $LOOP}'
-        (tmp_path / "config.ocio").write_text(text.replace("environment:\n  {}", declared))
-        assert len(list(load_config(tmp_path / "config.ocio").getEnvironmentVarNames())) == 5
+        path = written(tmp_path / "config.ocio", PORTABLE.replace("environment:\n  {}", declared))
+        assert len(list(load_config(path).getEnvironmentVarNames())) == 5
 
 
 def test_ociocheck_passes(folder):

@@ -5,28 +5,25 @@ import pytest
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import built_in_names, find_config, role_name
 from crfnet.errors import ConfigError
-from tests.helpers.refusals import refused
+from tests.helpers.folders import written
+from tests.helpers.refusals import refusal_of
 
 
 @pytest.fixture
 def config(tmp_path):
-    path = tmp_path / "show.ocio"
-    path.write_text(portable_config([]).serialize())
-    return path
+    return written(tmp_path / "show.ocio", portable_config([]).serialize())
 
 
 def blender(root, *, version="5.2", resources=""):
     """A Blender's files: the executable, and its config."""
     folder = root / resources / version / "datafiles" / "colormanagement"
     folder.mkdir(parents=True)
-    (folder / "config.ocio").write_text(portable_config([]).serialize())
-    return folder / "config.ocio"
+    return written(folder / "config.ocio", portable_config([]).serialize())
 
 
 def executable(path):
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("a program")
-    path.chmod(0o755)
+    written(path, "a program").chmod(0o755)
     return path
 
 
@@ -56,8 +53,7 @@ def test_the_environments_config(name, config, monkeypatch):
     assert find_config(name).path is None
     for value in ("", " $OCIO "):
         monkeypatch.setenv("OCIO", value)
-        with refused(ConfigError, "config_variable_unset"):
-            find_config(name)
+        assert refusal_of(ConfigError, find_config, name).code == "config_variable_unset"
 
 
 class TestBlender:
@@ -93,12 +89,10 @@ class TestBlender:
 )
 def test_anything_else_is_refused(name, code, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with refused(ConfigError, code):
-        find_config(name)
+    assert refusal_of(ConfigError, find_config, name).code == code
 
 
 def test_a_role_of_a_file_or_a_built_in_config_has_a_name_or_is_refused(config):
     assert role_name(str(config), "scene_linear") == "Linear Rec.709"
     assert role_name("ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "scene_linear") == "ACEScg"
-    with refused(ConfigError, "role_absent"):
-        role_name(str(config), "nonsense")
+    assert refusal_of(ConfigError, role_name, str(config), "nonsense").code == "role_absent"

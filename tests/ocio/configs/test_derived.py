@@ -1,6 +1,7 @@
 """Plates in a copy of somebody's config: the base stays, and everything of it means the same in the copy."""
 
 import re
+from unittest.mock import Mock
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -17,7 +18,7 @@ from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 BUILT_IN = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
 
@@ -144,8 +145,7 @@ class TestBase:
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
         """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
         studio.write_text(studio.read_text().replace("$SHOW/", ""))
-        look = write_look(tmp_path / "look", [f"{name}.jpg"])
-        done = add(studio, tmp_path / "new", look)
+        done = add(studio, tmp_path / "new", write_look(tmp_path / "look", [f"{name}.jpg"]))
         assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} (look).spi1d"}
         result = loaded(done.path)
         assert_same(conversions(result), conversions(loaded(studio)))
@@ -206,8 +206,7 @@ class TestBase:
 
     def test_a_folder_that_opencolorio_takes_for_a_variable_is_refused(self, studio, small_look, tmp_path):
         moved = studio.parent.rename(tmp_path / "a$b") / studio.name
-        with refused(ConfigError, "base_folder_is_variable"):
-            add(moved, tmp_path / "new", small_look)
+        assert refusal_of(ConfigError, add, moved, tmp_path / "new", small_look).code == "base_folder_is_variable"
 
 
 class TestAgain:
@@ -259,17 +258,13 @@ class TestFolder:
     def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
         (tmp_path / "show").mkdir()
         (tmp_path / "show" / name).write_text("mine")
-        with refused(PlateError, "file_exists"):
-            add(STUDIO, tmp_path / "show", small_look)
+        assert refusal_of(PlateError, add, STUDIO, tmp_path / "show", small_look).code == "file_exists"
         assert listed(tmp_path / "show") == [name]
         add(STUDIO, tmp_path / "show", small_look, overwrite=True)
         assert (tmp_path / "show" / name).read_text() != "mine"
 
     def test_a_failure_leaves_it_as_it_was(self, studio, small_look, monkeypatch, tmp_path):
-        def disk_is_full(*_arguments, **_options):
-            raise PlateError("the disk is full")
-
-        monkeypatch.setattr(derived, "write_config", disk_is_full)
+        monkeypatch.setattr(derived, "write_config", Mock(side_effect=PlateError("the disk is full")))
         with pytest.raises(PlateError):
             add(studio, tmp_path / "new" / "show", small_look)
         assert not (tmp_path / "new").exists()

@@ -15,6 +15,7 @@ from crfnet.configs.file_rules import (
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
 from tests.helpers.configs import loaded, rule_names
+from tests.helpers.folders import written
 from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
 
 
@@ -141,8 +142,7 @@ def test_files_of_several_plates_follow_the_rules_of_the_base(tmp_path):
     base = portable_config([])
     (rules := base.getFileRules()).insertRule(0, "by shot", "ACEScct", ".*sh010.*")
     base.setFileRules(rules)
-    (tmp_path / "base.ocio").write_text(base.serialize())
-    one = add(tmp_path / "base.ocio", tmp_path / "one", write_look(tmp_path / "a"))
+    one = add(written(tmp_path / "base.ocio", base.serialize()), tmp_path / "one", write_look(tmp_path / "a"))
     result = loaded(add(one.path, tmp_path / "two", write_look(tmp_path / "b")).path)
     assert [space_of(result, f"/{shot}/plate01.jpg") for shot in ("sh010", "sh020")] == ["ACEScct", "sRGB"]
 

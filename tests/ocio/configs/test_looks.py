@@ -15,20 +15,17 @@ from crfnet.luts.lut1d import Lut1D
 from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet.output_files import LONGEST_STEM, distinct_names
 from crfnet_core.colorimetry import AP1, DISPLAY_P3, REC709, Primaries
+from tests.helpers.folders import written
 from tests.helpers.looks import LUT, OTHER_LUT, write_look
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 
 def refusal(folder, root, *keys):
     """Return the code of the refusal of the sample's document, in which the entry at the keys is the last of them."""
     document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
     *path, key, value = keys
-    entry = functools.reduce(lambda part, name: part[name], path, document)
-    entry[key] = value
-    (folder / "plate.json").write_text(json.dumps(document))
-    with pytest.raises(ConfigError) as caught:
-        read_looks(folder / "plate.json")
-    return caught.value.code
+    functools.reduce(lambda part, name: part[name], path, document)[key] = value
+    return refusal_of(ConfigError, read_looks, written(folder / "plate.json", json.dumps(document))).code
 
 
 def test_folder_document_and_lut_are_one_look(tmp_path):
@@ -51,7 +48,7 @@ def test_primaries_are_those_of_the_document(tmp_path):
 def test_the_exposure_may_be_edited_in_the_looks_config(tmp_path):
     folder = write_look(tmp_path / "look", exposure=1.5)
     text = (folder / "config.ocio").read_text()
-    (folder / "config.ocio").write_text(text.replace("exposure: 1.5", "exposure: -2"))
+    written(folder / "config.ocio", text.replace("exposure: 1.5", "exposure: -2"))
     assert read_looks(folder)[0].space.exposure == -2
     (folder / "config.ocio").unlink()
     assert read_looks(folder)[0].space.exposure == 1.5
@@ -60,8 +57,7 @@ def test_the_exposure_may_be_edited_in_the_looks_config(tmp_path):
 def test_many_estimates_have_folders_of_their_own(tmp_path):
     write_look(tmp_path / "all" / "a", ["a.jpg"])
     write_look(tmp_path / "all" / "b", ["b.jpg"])
-    with refused(ConfigError, "folder_without_look"):
-        read_looks(tmp_path / "all")
+    assert refusal_of(ConfigError, read_looks, tmp_path / "all").code == "folder_without_look"
     (tmp_path / "all" / ESTIMATES).write_text("")
     assert [look.space.name for look in read_looks(tmp_path / "all")] == ["CRF a", "CRF b"]
 
@@ -81,8 +77,7 @@ def test_a_lut_from_elsewhere_will_do(tmp_path, suffix):
 def test_anything_else_is_refused(tmp_path, name, content, code):
     path = tmp_path / name
     path.mkdir() if content is None else path.write_text(content)
-    with refused(ConfigError, code):
-        read_looks(path)
+    assert refusal_of(ConfigError, read_looks, path).code == code
 
 
 @pytest.mark.parametrize("name", ["", "a.json", "a.spi1d"])
@@ -90,8 +85,7 @@ def test_a_document_that_may_not_be_read_is_not_passed_over(tmp_path, monkeypatc
     """Not even in a folder of several, or next to a LUT: a plate, or its exposure, would be lost."""
     write_look(tmp_path, ["a.jpg"])
     monkeypatch.setattr("crfnet.configs.looks.read_json", Mock(side_effect=PermissionError(13, "Permission denied")))
-    with refused(ConfigError, "not_opened"):
-        read_looks(tmp_path / name)
+    assert refusal_of(ConfigError, read_looks, tmp_path / name).code == "not_opened"
 
 
 @pytest.mark.parametrize(
@@ -123,16 +117,14 @@ def test_an_exposure_beyond_single_precision_is_refused(tmp_path, root, stops):
 def test_a_missing_lut_is_named(tmp_path):
     folder = write_look(tmp_path / "look")
     (folder / "plate01.spi1d").unlink()
-    with refused(LutError, "lut_unreadable"):
-        read_looks(folder)
+    assert refusal_of(LutError, read_looks, folder).code == "lut_unreadable"
 
 
 def test_a_lut_of_another_kind_is_refused(tmp_path):
     write_lut(tmp_path / "forward.spi1d", Lut1D(np.linspace(0, 1, 256) ** 0.45))
     write_lut(tmp_path / "rgb.cube", RgbLut1D((LUT, LUT, OTHER_LUT)))
     for name in ("forward.spi1d", "rgb.cube"):
-        with refused(LutError, "lut_without_inverse_response"):
-            read_looks(tmp_path / name)
+        assert refusal_of(LutError, read_looks, tmp_path / name).code == "lut_without_inverse_response"
 
 
 def test_the_files_of_plates_of_one_long_name_can_be_written():

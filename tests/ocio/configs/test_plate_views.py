@@ -13,6 +13,7 @@ from crfnet.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
 from crfnet.luts.files import write_lut
 from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
 from tests.helpers.configs import converted, loaded
+from tests.helpers.folders import written
 from tests.helpers.looks import LUT
 
 CLIPPED, ROLLED_OFF = view_names("CRF plate")
@@ -24,8 +25,7 @@ def shown(tmp_path):
     write_lut(tmp_path / "plate.spi1d", LUT)
 
     def show(config, display, view, pixels, *, optimization=OCIO.OPTIMIZATION_DEFAULT):
-        (tmp_path / "config.ocio").write_text(config.serialize())
-        result = loaded(tmp_path / "config.ocio")
+        result = loaded(written(tmp_path / "config.ocio", config.serialize()))
         pixels = np.array(pixels, dtype=np.float32)
         processor = result.getProcessor("scene_linear", display, view, OCIO.TRANSFORM_DIR_FORWARD)
         processor.getOptimizedCPUProcessor(optimization).applyRGB(pixels)
@@ -40,8 +40,8 @@ def linear(tmp_path):
 
     def convert(config, codes):
         write_lut(tmp_path / "plate.spi1d", LUT, overwrite=True)
-        (tmp_path / "linear.ocio").write_text(config.serialize())
-        return converted(loaded(tmp_path / "linear.ocio"), "CRF plate", "scene_linear", np.array(codes) / 255)
+        result = loaded(written(tmp_path / "linear.ocio", config.serialize()))
+        return converted(result, "CRF plate", "scene_linear", np.array(codes) / 255)
 
     return convert
 

@@ -8,7 +8,7 @@ from crfnet.errors import LutError
 from crfnet.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
 from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.response.curve import ResponseCurve
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 EXTENDED = (-0.125, 1.125)
 
@@ -16,10 +16,8 @@ EXTENDED = (-0.125, 1.125)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 def test_apply_interpolates_clamps_and_takes_nan_for_the_first_entry(kind):
     lut = Lut1D([0.0, 0.25, 1.0])
-    inputs = np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind)
-    result = lut.apply(inputs)
-    assert result.dtype == kind
-    assert result.tolist() == [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0]
+    result = lut.apply(np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind))
+    assert (result.dtype, result.tolist()) == (kind, [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0])
 
 
 @pytest.mark.parametrize("domain", [(0.0, 1.0), (-0.125, 1.125)])
@@ -61,8 +59,7 @@ def test_pixels_keep_their_shape_and_are_not_written():
     ],
 )
 def test_other_tables_are_refused(values, domain, code):
-    with refused(LutError, code):
-        Lut1D(values, domain)
+    assert refusal_of(LutError, Lut1D, values, domain).code == code
 
 
 def test_a_table_is_its_own_and_single_precision():
@@ -150,8 +147,7 @@ def test_the_slope_beyond_a_clipped_end_is_bounded():
     ],
 )
 def test_choices_that_make_no_lut_of_a_response_are_refused(code, choice):
-    with refused(LutError, code):
-        inverse_response_lut(ResponseCurve.gamma(), **choice)
+    assert refusal_of(LutError, inverse_response_lut, ResponseCurve.gamma(), **choice).code == code
 
 
 @pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])
@@ -162,8 +158,7 @@ def test_code_values_are_refused(true_response, step):
         with refused(LutError, "lut_codes", largest=np.max(codes)):
             step(lut, codes)
     for others in ("0.5", [[1], [1, 0]], np.ma.masked_greater([0.2, 0.8], 0.5)):
-        with refused(LutError, "not_numbers"):
-            step(lut, others)
+        assert refusal_of(LutError, step, lut, others).code == "not_numbers"
     with refused(LutError, "lut_pixels"):  # the last channel is alpha, which OpenColorIO keeps
         step(lut, np.zeros((2, 3, 4)))
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])

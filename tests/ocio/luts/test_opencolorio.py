@@ -12,7 +12,8 @@ from crfnet.luts.lut1d import MAX_LENGTH, Lut1D
 from crfnet.luts.opencolorio import MAX_FILE_SIZE
 from crfnet.luts.rgb_lut import RgbLut1D
 from tests.helpers.configs import through_lut
-from tests.helpers.refusals import refused
+from tests.helpers.folders import written
+from tests.helpers.refusals import refusal_of, refused
 
 ROWS = ("0", "0.1", "0.3", "0.6", "1")
 COMMAS = ("0", "0,1", "0,3", "0,6", "1")  # OpenColorIO reads "0,1" as 0
@@ -69,8 +70,7 @@ def csp(rows=ROWS, *, shaper=IDENTITY, kind="1D"):
     ],
 )
 def test_what_opencolorio_reads_is_read_alike(tmp_path, name, text, expected):
-    (tmp_path / name).write_text(text, encoding="utf-8")
-    lut = read_lut(tmp_path / name)
+    lut = read_lut(written(tmp_path / name, text))
     assert expected is None or lut == expected
     pixels = np.linspace(-1, 3, 4001)
     judged = through_lut(tmp_path / name, pixels, optimization=OCIO.OPTIMIZATION_NONE)
@@ -143,8 +143,7 @@ def test_absent_and_long_files_folders_pipes_and_devices_are_refused(tmp_path):
     (tmp_path / "zero.cube").symlink_to("/dev/zero")
     (tmp_path / "folder.cube").mkdir()
     for name in ("absent", "long", "pipe", "zero", "folder"):
-        with refused(LutError, "lut_unreadable"):
-            read_lut(tmp_path / f"{name}.cube")
+        assert refusal_of(LutError, read_lut, tmp_path / f"{name}.cube").code == "lut_unreadable"
 
 
 @pytest.mark.parametrize("suffix", WRITERS)

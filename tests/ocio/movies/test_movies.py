@@ -1,3 +1,4 @@
+import wave
 from threading import Event
 
 import numpy as np
@@ -7,8 +8,10 @@ from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
 from crfnet.movies.stream import read_stream
+from tests.helpers.folders import written
 from tests.helpers.movies import pictures, run_ffmpeg, write_movie
 from tests.helpers.plates import LUT, attributes, linearize, read_exr
+from tests.helpers.refusals import refusal_of
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -55,13 +58,6 @@ def bars(frames):
     return numbers
 
 
-def refusal(path, call=read_stream):
-    with pytest.raises(PlateError) as caught:
-        call(path)
-    assert str(caught.value).isprintable()
-    return caught.value.code
-
-
 @pytest.fixture
 def movie(tmp_path):
     return write_movie(tmp_path / "clip.mp4", 24, options=B_FRAMES)
@@ -73,8 +69,7 @@ def test_all_frames_are_there_in_order(tmp_path, name):
     path = write_movie(tmp_path / file, count, **options)
     frames = MovieFrames.find(path)
     assert is_movie(path)
-    assert frames.numbers == tuple(range(1, count + 1))
-    assert bars(frames) == list(range(1, count + 1))
+    assert (frames.numbers, bars(frames)) == (tuple(range(1, count + 1)), list(range(1, count + 1)))
     assert frames.movie.bit_depth == {"prores 4444": 12, "prores": 10}.get(name, 10 if "10 bits" in name else 8)
     picture = next(pictures(1, options.get("size", (128, 96)))) / 255
     assert np.abs(next(frames.loaders([0]))().samples / WHITE - picture).mean() < 0.02
@@ -141,7 +136,7 @@ def test_frames_are_chosen_and_missing_ones_named(movie):
     assert (frames.numbers, frames.missing) == ((9, 20), (25, 30))
     assert bars(frames) == [9, 20]
     assert list(decoded(frames.movie, [])) == []
-    assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
+    assert refusal_of(PlateError, MovieFrames.find, movie, "100").code == "no_such_frames"
 
 
 def test_a_movie_is_hashed_while_it_is_decoded(movie, tmp_path, monkeypatch):
@@ -158,8 +153,7 @@ def damage(path, number, start=0.0, end=1.0, *, before=0):
     content = bytearray(path.read_bytes())
     begin, end = (packet.pos + int(packet.size * part) for part in (start, end))
     content[begin - before : end] = bytes(end - begin + before)
-    path.write_bytes(content)
-    return path
+    return written(path, content)
 
 
 #: Frames predicted from the one before, and a key frame every 8.
@@ -220,8 +214,7 @@ def test_a_damaged_first_frame_counts(tmp_path):
 def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, name, options):
     path = write_movie(tmp_path / name, 24, **options)
     assert "cut short" not in str(read_stream(path))
-    path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
-    frames = MovieFrames.find(path)
+    frames = MovieFrames.find(written(path, path.read_bytes()[: path.stat().st_size * 2 // 3]))
     shown = bars(frames)
     assert "the file is cut short" in str(frames.movie)
     assert shown[:10] == [*range(1, 11)]
@@ -230,7 +223,7 @@ def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, na
 
 def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
     path = damage(write_movie(tmp_path / "a.mkv", codec="ffv1"), 4, end=0.01, before=20)
-    assert refusal(path) == "movie_undecodable"
+    assert refusal_of(PlateError, read_stream, path).code == "movie_undecodable"
 
 
 REC709 = {"color_range": 1, "colorspace": 1, "color_primaries": 1, "color_trc": 1}
@@ -248,25 +241,16 @@ CHANGES = {
 def test_a_change_midway_is_refused(tmp_path, change):
     first = {"tags": REC709} if "tags" in CHANGES[change] else {}
     parts = [write_movie(tmp_path / f"{n}.ts", 6, **each) for n, each in enumerate((first, CHANGES[change]))]
-    (tmp_path / "a.ts").write_bytes(b"".join(part.read_bytes() for part in parts))
-    frames = MovieFrames.find(tmp_path / "a.ts")
+    frames = MovieFrames.find(written(tmp_path / "a.ts", b"".join(part.read_bytes() for part in parts)))
     *_, last = frames.loaders(range(12))
-    assert refusal(None, lambda _: last()) == "movie_changes"
-    assert refusal(None, lambda _: list(frames.photos(frames.numbers))) == "movie_changes"
+    for call in (last, lambda: list(frames.photos(frames.numbers))):
+        assert refusal_of(PlateError, call).code == "movie_changes"
 
 
 @pytest.mark.parametrize(("degrees", "quarters"), [(90, 1), (180, 2), (270, 3)])
 def test_frames_are_upright_and_say_so(tmp_path, degrees, quarters):
-    image = next(pictures(1))
-    paths = [tmp_path / "stored.mov", tmp_path / "turned.mov"]
-    for path, angle in zip(paths, (0, degrees), strict=True):
-        with av.open(str(path), "w") as container:
-            stream = container.add_stream("qtrle", rate=24)
-            stream.width, stream.height, stream.pix_fmt = 128, 96, "rgb24"
-            if angle:
-                stream.set_display_rotation(angle)
-            frame = av.VideoFrame.from_ndarray(image, format="rgb24")
-            container.mux([*stream.encode(frame), *stream.encode()])
+    movie = {"count": 1, "codec": "qtrle", "form": "rgb24"}
+    paths = [write_movie(tmp_path / f"{angle}.mov", **movie, degrees=angle) for angle in (0, degrees)]
     stored, turned = (MovieFrames.find(path) for path in paths)
     assert [next(frames.photos([1]))[1].metadata.is_turned for frames in (stored, turned)] == [False, True]
     frame = next(turned.loaders([0]))()
@@ -282,12 +266,9 @@ def test_alpha_is_kept(tmp_path):
 
 
 def test_damaged_movies_and_sound_are_refused(movie, tmp_path):
-    (tmp_path / "cut short.mp4").write_bytes(movie.read_bytes()[:2000])
-    assert refusal(tmp_path / "cut short.mp4") == "movie_undecodable"
-    with av.open(str(tmp_path / "a.wav"), "w") as container:
-        stream = container.add_stream("pcm_s16le", rate=8000)
-        stream.layout = "mono"
-        sound = av.AudioFrame.from_ndarray(np.zeros((1, 800), np.int16), format="s16", layout="mono")
-        sound.rate = 8000
-        container.mux(stream.encode(sound))
-    assert refusal(tmp_path / "a.wav") == "no_video"
+    short = written(tmp_path / "cut short.mp4", movie.read_bytes()[:2000])
+    assert refusal_of(PlateError, read_stream, short).code == "movie_undecodable"
+    with wave.open(str(tmp_path / "a.wav"), "wb") as file:
+        file.setparams((1, 2, 8000, 0, "NONE", ""))
+        file.writeframes(bytes(1600))
+    assert refusal_of(PlateError, read_stream, tmp_path / "a.wav").code == "no_video"

@@ -10,9 +10,10 @@ from crfnet.movies.frames import MovieFrames
 from crfnet.movies.library import is_movie
 from crfnet.movies.source import chosen_photos
 from crfnet.movies.stream import read_stream
+from tests.helpers.folders import written
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, run_ffmpeg, write_movie
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -38,12 +39,9 @@ def test_frames_are_chosen_of_those_asked_for(tmp_path):
 
 @pytest.mark.parametrize(("count", "is_still"), [(96, False), (24, True)])
 def test_black_and_white_and_repeated_frames_are_passed_over(tmp_path, count, is_still):
-    images = [
-        np.full_like(image, 255 * (n > count // 4)) if n < count // 2 else image
-        for n, image in enumerate(pictures(count))
-    ]
-    if is_still:
-        images = [images[-1]] * count
+    images = [*pictures(count)]
+    plain = [np.full_like(images[0], 255 * (number > count // 4)) for number in range(count // 2)]
+    images = [images[-1]] * count if is_still else plain + images[count // 2 :]
     numbers = chosen(write_movie(tmp_path / "a.mp4", count, images=images, options={"g": "1"}))
     assert len(numbers) == 1 if is_still else min(numbers) > count // 2
 
@@ -55,8 +53,7 @@ def test_a_black_movie_gives_its_frames_all_the_same(tmp_path):
 def test_frames_have_names_bits_and_metadata(tmp_path):
     path = write_movie(tmp_path / "a.mp4", codec="libx265", form="yuv420p10le")
     number, photo = next(iter(chosen_photos(MovieFrames.find(path))))
-    assert photo.path.name == f"a.mp4 frame {number}"
-    assert photo.bit_depth == 10
+    assert (photo.path.name, photo.bit_depth) == (f"a.mp4 frame {number}", 10)
     assert (photo.metadata.width, photo.metadata.height) == (128, 96)
     codes = photo.pixels * 1023
     assert abs(codes - codes.round()).max() < 1e-3
@@ -86,8 +83,7 @@ def test_a_cover_is_not_a_film(tmp_path):
     cover = {"codec": "mjpeg", "form": "yuvj420p", "disposition": av.stream.Disposition.attached_pic}
     path = write_movie(tmp_path / "a.mp4", 1, **cover)
     assert is_movie(path)
-    with refused(PlateError, "no_video"):
-        read_stream(path)
+    assert refusal_of(PlateError, read_stream, path).code == "no_video"
 
 
 def test_what_is_not_a_movie(tmp_path):
@@ -102,8 +98,7 @@ def test_what_is_not_a_movie(tmp_path):
 @pytest.mark.parametrize("head", ["1f0700bf", "b7d80020", "0000000001bc", "000001b0", "00000167", "47" + 203 * "00"])
 def test_movies_are_known_by_their_first_bytes(tmp_path, head):
     """DV, Windows TV, GXF, bare MPEG-4 and H.264, and a transport stream with error correction."""
-    (tmp_path / "a").write_bytes(600 * bytes.fromhex(head))
-    assert is_movie(tmp_path / "a")
+    assert is_movie(written(tmp_path / "a", 600 * bytes.fromhex(head)))
 
 
 @pytest.mark.parametrize(
@@ -116,16 +111,14 @@ def test_a_movie_of_too_large_frames_is_refused_before_one_is_decoded(tmp_path, 
     read_stream(path)
     monkeypatch.setattr("crfnet.movies.library.MOST_PIXELS", 128 * 96 - 1)
     monkeypatch.setattr("crfnet.movies.stream.decoded_packet", None)
-    with refused(PlateError, "movie_too_large"):
-        read_stream(path)
+    assert refusal_of(PlateError, read_stream, path).code == "movie_too_large"
 
 
 def test_opening_a_movie_of_many_empty_boxes_ends(tmp_path, monkeypatch):
     movie = write_movie(tmp_path / "a.mp4")
-    movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
+    written(movie, movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
     monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
-    with refused(PlateError, "movie_undecodable"):
-        read_stream(movie)
+    assert refusal_of(PlateError, read_stream, movie).code == "movie_undecodable"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")

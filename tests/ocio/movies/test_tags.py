@@ -10,38 +10,36 @@ from crfnet.movies.frames import MovieFrames
 from crfnet.movies.stream import check_progressive, read_stream
 from crfnet_core.colorimetry import REC2020
 from crfnet_core.photograph.metadata import file_origin
+from tests.helpers.crafted_files import box
+from tests.helpers.folders import changed
 from tests.helpers.images import read_image, write_image
 from tests.helpers.movies import pictures, run_ffmpeg, write_movie
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 
-def with_box(path, box):
+def with_box(path, added):
     """Insert a box in front of the decoder configuration of a HEVC movie whose header stands at the end."""
     content = path.read_bytes()
     at = content.index(b"hvcC") - 4
     assert content.index(b"mdat") < at
-    content = bytearray(content[:at] + box + content[at:])
+    content = bytearray(content[:at] + added + content[at:])
     for name in (b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd", b"hev1"):
         place = content.index(name) - 4
-        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(box))
+        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(added))
     path.write_bytes(content)
 
 
 def test_dolby_vision_of_profile_5_is_refused(tmp_path):
     movies = [write_movie(tmp_path / f"{profile}.mp4", codec="libx265") for profile in (5, 8)]
     for path in movies:
-        with_box(path, struct.pack(">I4s", 32, b"dvcC") + bytes([1, 0, int(path.stem) << 1, 13, 0]) + bytes(19))
-    with refused(PlateError, "dolby_vision"):
-        read_stream(movies[0])
+        with_box(path, box(b"dvcC", bytes([1, 0, int(path.stem) << 1, 13, 0]), bytes(19)))
+    assert refusal_of(PlateError, read_stream, movies[0]).code == "dolby_vision"
     assert read_stream(movies[1]).codec == "HEVC"
 
 
 def test_metadata_that_is_not_utf8_is_read(tmp_path):
     path = write_movie(tmp_path / "a.mov", metadata={"title": "Voigt"})
-    content = path.read_bytes()
-    assert b"Voigt" in content
-    path.write_bytes(content.replace(b"Voigt", b"Vo\xefgt"))
-    assert read_stream(path).metadata["title"] == "Vo\ufffdgt"
+    assert read_stream(changed(path, b"Voigt", b"Vo\xefgt")).metadata["title"] == "Vo\ufffdgt"
 
 
 def test_maker_model_rate_and_timecode(tmp_path):
@@ -106,19 +104,16 @@ def test_the_advised_line_of_ffmpeg_gives_the_colors_of_the_movie(tmp_path, code
     write_image(tmp_path / "a.png", picture)
     coding = ("-vf", filters, "-pix_fmt", "yuv444p", "-c:v", "ffv1", *(["-colorspace", matrix] if matrix else []))
     run_ffmpeg("-i", tmp_path / "a.png", *coding, tmp_path / "a.mkv")
-    with pytest.raises(PlateError) as caught:
-        check_progressive(read_stream(tmp_path / "a.mkv"))
-    assert caught.value.code == code
-    run_ffmpeg(*shlex.split(caught.value.facts["line"])[1:])
+    problem = refusal_of(PlateError, lambda: check_progressive(read_stream(tmp_path / "a.mkv")))
+    assert problem.code == code
+    run_ffmpeg(*shlex.split(problem.facts["line"])[1:])
     assert np.abs(read_image(tmp_path / "a.0001.png") - picture / 255).mean() < 0.01
 
 
 def test_white_of_five_bits_stays_white_by_the_advised_line_of_ffmpeg(tmp_path):
     write_image(tmp_path / "a.png", np.full((96, 128, 3), 255, np.uint8))
     run_ffmpeg("-i", tmp_path / "a.png", "-c:v", "rawvideo", "-pix_fmt", "rgb555le", tmp_path / "a.nut")
-    with pytest.raises(PlateError) as caught:
-        read_stream(tmp_path / "a.nut")
-    run_ffmpeg(*shlex.split(caught.value.facts["line"])[1:])
+    run_ffmpeg(*shlex.split(refusal_of(PlateError, read_stream, tmp_path / "a.nut").facts["line"])[1:])
     assert read_image(tmp_path / "a.0001.png").min() > 0.99
 
 

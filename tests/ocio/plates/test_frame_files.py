@@ -12,8 +12,9 @@ from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from tests.helpers.folders import changed, written
 from tests.helpers.images import write_image
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 def write_exr(path, values, names, **attributes):
@@ -40,8 +41,7 @@ def test_an_exr_of_many_large_channels_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(frame_files, "MAX_PIXELS", 1100)
     assert read_frame(path, is_encoded=True).samples.shape == (10, 10, 3)
     monkeypatch.setattr(frame_files, "MAX_PIXELS", 1000)
-    with refused(PlateError, "exr_samples"):
-        read_frame(path, is_encoded=True)
+    assert refusal_of(PlateError, read_frame, path, is_encoded=True).code == "exr_samples"
 
 
 @pytest.mark.parametrize(
@@ -68,30 +68,21 @@ def test_an_exr_whose_tag_does_not_say_that_it_is_encoded_is_refused(tmp_path, r
 
 
 @pytest.mark.parametrize("first", [("Z",), ("Y",), ("X", "Y", "Z")])
-def test_the_first_part_with_colors_is_read(tmp_path, first):
+def test_the_first_part_with_colors_is_read(tmp_path, oiiotool, first):
     """Depth, a mask or normals may come before it."""
-    parts = [oiio.ImageSpec(4, 3, len(names), oiio.FLOAT) for names in (first, "RGB")]
-    for part, names in zip(parts, (first, "RGB"), strict=True):
-        part.channelnames = tuple(names)
-        part.attribute("oiio:subimagename", names[0])
-    path = tmp_path / "a.exr"
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), tuple(parts))
-    assert output.write_image(np.full((3, 4, len(first)), 7, np.float32))
-    assert output.open(str(path), parts[1], "AppendSubimage")
     values = np.random.default_rng(0).random((3, 4, 3), np.float32)
-    assert output.write_image(values)
-    output.close()
+    parts = [write_exr(tmp_path / "first.exr", np.full((3, 4, len(first)), 7), first)]
+    parts.append(write_exr(tmp_path / "colors.exr", values, ("R", "G", "B")))
+    path = tmp_path / "a.exr"
+    oiiotool(*parts, "--siappend", "-o", path)
+    assert oiio.ImageBuf(str(path)).nsubimages == 2
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, values)
 
 
 def test_an_exr_with_names_that_are_not_utf8(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.full((4, 4, 4), 0.5), ("R", "G", "B", "l_ft.Z"), multiView="l_ft_right")
-    content = path.read_bytes().replace(b"l_ft", b"l\xe4ft")
-    text, texts = b"multiView\0string\0\x0a\0\0\0", b"multiView\0stringvector\0\x0e\0\0\0\x0a\0\0\0"
-    assert text in content
-    path.write_bytes(content.replace(text, texts))
-    header = read_frame(path, is_encoded=True).header
+    changed(path, b"multiView\0string\0\x0a\0\0\0", b"multiView\0stringvector\0\x0e\0\0\0\x0a\0\0\0")
+    header = read_frame(written(path, path.read_bytes().replace(b"l_ft", b"l\xe4ft")), is_encoded=True).header
     assert linear_header(header, channels=3, depth="half", attributes={}).nchannels == 3
 
 
@@ -131,6 +122,6 @@ def test_an_exr_that_is_tagged_as_encoded_has_the_primaries_of_the_tag(tmp_path)
 
 def test_an_exr_with_a_damaged_header_is_refused(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.zeros((4, 4, 3)), ("R", "G", "B"))
-    path.write_bytes(path.read_bytes().replace(b"channels\0chlist\0", b"channels\0chl\xa7\x1bt\0", 1))
+    changed(path, b"channels\0chlist\0", b"channels\0chl\xa7\x1bt\0")
     with refused(PlateError, "exr_unreadable", path=path):
         read_frame(path, is_encoded=True)

@@ -7,7 +7,7 @@ from crfnet.errors import PlateError
 from crfnet.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence, find_frames, sample_frames
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 
 def touch(folder, *names):
@@ -56,8 +56,7 @@ def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     touch(tmp_path, "p.0010.png", "p.0009.png", "p.0012.png", "p.0015.png")
     sequence = find_frames(tmp_path / pattern)
     assert names(sequence) == ["p.0009.png", "p.0010.png", "p.0012.png", "p.0015.png"]
-    assert sequence.numbers == (9, 10, 12, 15)
-    assert sequence.missing == (11, 13, 14)
+    assert (sequence.numbers, sequence.missing) == ((9, 10, 12, 15), (11, 13, 14))
 
 
 def test_other_files_are_left_alone(tmp_path):
@@ -70,8 +69,7 @@ def test_other_files_are_left_alone(tmp_path):
 def test_only_the_chosen_frames_are_found(tmp_path):
     touch(tmp_path, *(f"p.{number:04d}.png" for number in (1, 2, 3, 5, 8)))
     sequence = find_frames(tmp_path / "p.####.png", "2-6,20")
-    assert sequence.numbers == (2, 3, 5)
-    assert sequence.missing == (4, 6, 20)
+    assert (sequence.numbers, sequence.missing) == ((2, 3, 5), (4, 6, 20))
     assert find_frames(tmp_path / "p.####.png", [8, 1, 1]).numbers == (1, 8)
 
 
@@ -119,8 +117,7 @@ def test_a_specification_stands_for_ascending_numbers(frames, numbers):
 
 @pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1 2", "1.5", "٣", "1-5x0", "1-2x0.5"])
 def test_a_malformed_specification_is_refused(frames):
-    with refused(PlateError, "bad_frames"):
-        parse_frames(frames)
+    assert refusal_of(PlateError, parse_frames, frames).code == "bad_frames"
 
 
 @pytest.mark.parametrize("frames", ["0-999999999", "1-5000000"])
@@ -131,8 +128,7 @@ def test_an_endless_range_is_refused_at_once(frames):
 
 def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
-    with refused(PlateError, "frames_far_apart"):
-        find_frames(tmp_path / "p.%d.png")
+    assert refusal_of(PlateError, find_frames, tmp_path / "p.%d.png").code == "frames_far_apart"
     assert find_frames(tmp_path / "p.%d.png", "1").numbers == (1,)
 
 
@@ -149,8 +145,7 @@ def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     (tmp_path / "empty").mkdir()
     touch(tmp_path / "empty", "readme.txt", "p.0001.png", ".p.0002.png")
-    with refused(PlateError, code):
-        find_frames(tmp_path / name, frames)
+    assert refusal_of(PlateError, find_frames, tmp_path / name, frames).code == code
 
 
 @pytest.mark.parametrize(

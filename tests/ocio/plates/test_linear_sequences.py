@@ -1,7 +1,10 @@
+import os
 import shutil
 import signal
 import subprocess
 import sys
+import threading
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +12,14 @@ import pytest
 
 from crfnet.errors import PlateError
 from crfnet.luts.lut1d import Lut1D
+from crfnet.plates import linear
+from crfnet.plates.frame_files import EncodedFrame, FirstFrame
 from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of, refused
 
 ROOT = Path(__file__).parents[3]
 
@@ -46,22 +51,18 @@ def test_every_frame_of_a_sequence_is_written(tmp_path, out):
 
 def test_bad_and_missing_frames_are_named_and_the_others_written(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 3, 5, 9))
-    for number in (2, 3):
-        whole = (tmp_path / f"plate.{number:04d}.png").read_bytes()
-        (tmp_path / f"plate.{number:04d}.png").write_bytes(whole[: len(whole) // 2])
-    calls = []
-    with pytest.raises(PlateError) as caught:
-        linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
-    facts = caught.value.facts
-    assert (caught.value.code, facts["count"], facts["total"], facts["frames"]) == ("frames_failed", 2, 5, "2-3")
+    for path in (tmp_path / "plate.0002.png", tmp_path / "plate.0003.png"):
+        os.truncate(path, path.stat().st_size // 2)
+    calls, arguments = [], (pattern, out / "a.%d.exr", LUT)
+    some = refusal_of(PlateError, linearize, *arguments, progress=lambda *call: calls.append(call))
+    facts = some.facts
+    assert (some.code, facts["count"], facts["total"], facts["frames"]) == ("frames_failed", 2, 5, "2-3")
     assert (facts["first"].facts["path"], facts["gaps"]) == (tmp_path / "plate.0002.png", "; missing are 4, 6-8")
-    assert listed(out) == ["a.1.exr", "a.5.exr", "a.9.exr"]
-    assert calls[-1] == (5, 5)
-    with pytest.raises(PlateError) as none:
-        linearize(pattern, out / "a.%d.exr", LUT, frames="2-3")
-    assert ["the others are written" in str(error.value) for error in (caught, none)] == [True, False]
+    assert (listed(out), calls[-1]) == (["a.1.exr", "a.5.exr", "a.9.exr"], (5, 5))
+    none = refusal_of(PlateError, linearize, *arguments, frames="2-3")
+    assert ["the others are written" in str(problem) for problem in (some, none)] == [True, False]
     write_sequence(tmp_path, (2, 3))
-    report = linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
+    report = linearize(*arguments, progress=lambda *call: calls.append(call))
     assert (len(report.written), calls[-3:]) == (2, [(3, 5), (4, 5), (5, 5)])
 
 
@@ -111,3 +112,39 @@ def test_an_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, st
     assert set(report.skipped) == set(finished)
     assert len(report.written) == total - len(finished)
     np.testing.assert_array_equal(read_exr(report.written[-1])[0], expected)
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_jobs_are_taken_only_when_there_is_room(workers):
+    taken, ended, most = [], [], []
+
+    def jobs():
+        for number in range(30):
+            taken.append(number)
+            most.append(len(taken) - len(ended))
+            yield number, lambda number=number: ended.append(number)
+
+    list(linear.finished(jobs(), workers, waiting=2))
+    assert max(most) <= workers + 2
+
+
+def test_closing_finishes_what_has_begun_and_drops_the_rest():
+    begun, go = [], threading.Event()
+
+    def work():
+        begun.append(1)
+        go.wait(5)
+
+    jobs = [(0, lambda: None), *((number, work) for number in range(1, 9))]
+    with closing(linear.finished(jobs, 1, waiting=4)) as ended:
+        assert next(ended)[0] == 0
+        go.set()
+    assert len(begun) < 8
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("plate")]
+
+
+def test_of_large_frames_fewer_are_in_memory(monkeypatch):
+    monkeypatch.setattr(linear, "cores", lambda: 16)
+    sizes = [np.broadcast_to(np.uint8(0), (side, side, 3)) for side in (4000, 8000, 16000)]
+    frames = [EncodedFrame(samples, 255, None, None) for samples in sizes]
+    assert [linear._workers(FirstFrame(0, Path(), frame)) for frame in frames] == [8, 3, 1]

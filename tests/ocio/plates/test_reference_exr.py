@@ -11,7 +11,7 @@ from crfnet.plates.frame_files import read_frame
 from tests.helpers.images import write_image
 from tests.helpers.plates import linearize
 from tests.helpers.reference_exr import OpenEXR, read_reference
-from tests.helpers.refusals import refused
+from tests.helpers.refusals import refusal_of
 
 
 @pytest.mark.parametrize(("depth", "sample"), [("half", np.float16), ("float", np.float32)])
@@ -29,8 +29,7 @@ def test_alpha_of_whole_numbers_is_refused(tmp_path):
     """It holds the numbers of objects, not coverage."""
     picture = {"RGB": np.full((4, 5, 3), 0.5, np.float32), "A": np.ones((4, 5), np.uint32)}
     OpenEXR.File({"type": OpenEXR.scanlineimage}, picture).write(str(tmp_path / "a.exr"))
-    with refused(PlateError, "exr_channels"):
-        read_frame(tmp_path / "a.exr", is_encoded=True)
+    assert refusal_of(PlateError, read_frame, tmp_path / "a.exr", is_encoded=True).code == "exr_channels"
 
 
 @pytest.mark.parametrize("width", [90, 8000])  # rows of less and of more than a page of memory
