@@ -141,18 +141,15 @@ def _relocated(base: ConfigSource) -> OCIO.Config:
     folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
     config.clearSearchPaths()
     if base.path is not None:
+        home = base.path.parent
+        if "$" in str(home) or str(home).count("%") > 1:
+            raise ConfigError("base_folder_is_variable", path=home)
         for folder in folders:
-            for path in _absolute_paths(folder, base.path.parent):
-                config.addSearchPath(path)
+            config.addSearchPath(str(home / folder))
+            if folder.startswith(("$", "%")):  # a variable, whose value may be an absolute path
+                config.addSearchPath(folder)
     config.addSearchPath(".")
     return config
-
-
-def _absolute_paths(folder: str, home: Path) -> list[str]:
-    """Return the absolute search paths for one of a config in `home`; the value of a variable may be absolute, too."""
-    if "$" in str(home) or str(home).count("%") > 1:
-        raise ConfigError("base_folder_is_variable", path=home)
-    return [str(home / folder), *([folder] if folder.startswith(("$", "%")) else [])]
 
 
 def _names_on_path(base: ConfigSource) -> set[str]:
@@ -162,6 +159,5 @@ def _names_on_path(base: ConfigSource) -> set[str]:
         return names
     for folder in [*context.getSearchPaths()] or ["."]:
         with suppress(OSError):
-            files = (base.path.parent / context.resolveStringVar(folder)).iterdir()
-            names |= {folded(file.name) for file in files}
+            names |= {folded(file.name) for file in (base.path.parent / context.resolveStringVar(folder)).iterdir()}
     return names
