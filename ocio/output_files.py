@@ -1,7 +1,5 @@
 """Which files an estimate writes, and whether they may be written: checked before any work is done."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import re
@@ -10,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.files import check_target, cut_to_bytes
 from crfnet_core.staging import remove_abandoned, staged_files
@@ -42,7 +41,7 @@ class OutputFiles:
     forward: tuple[Path, ...] = ()  # the response itself in each format; none if it is not written
 
     @classmethod
-    def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> OutputFiles:
+    def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> Self:
         """Return the files that the options (by default the usual ones) ask for of photographs with one response."""
         stem, outputs = plain_stem(photos[0]), outputs or OutputOptions()
         return cls(
