@@ -9,7 +9,7 @@ from collections.abc import Mapping
 SENTENCES: Mapping[str, str] = {
     # library
     "bad_camera_name": "{name!r} cannot name a camera; it takes 1 to 60 letters, digits, spaces and signs of '.,+()-_,"
-    " a letter or a digit first",
+    " a letter or a digit first and no dot last, and no device of Windows, such as CON",
     "camera_exists": "{folder} has a camera {name!r} already",
     "camera_folder": "{folder}: cannot be used ({reason}); set {variable} to another folder",
     "camera_not_measured": "{path}: holds no measured response; measure the camera, or remove the file",
@@ -60,7 +60,7 @@ SENTENCES: Mapping[str, str] = {
     # response
     "curve_rows": "needed are finite numbers in rows of {length}, found shape {shape}",
     "not_numbers": "a response or a LUT needs numbers, found {kind}",
-    "brightness_codes": "found code values, up to {found:.9g}: divide them by the largest code, say 255",
+    "brightness_codes": "found values up to {found:.9g}, not brightness: divide codes by the largest one, say 255",
     "curve_dark": "a response must be brighter at full irradiance than in the dark",
     "curve_exponent": "a gamma must be a number above 0, found {exponent}",
     "curve_not_strict": "a response must increase strictly from 0 to 1; use from_samples",

@@ -7,8 +7,9 @@ import os
 import sys
 from collections.abc import Callable, Mapping
 from enum import Enum
+from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Protocol, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,19 +87,26 @@ def typed_value(value: Any, kind: Any) -> Any:
     """Return a plain value, as of a document, as a value of the type in an annotation; raise TypeError or ValueError.
 
     Of a dataclass, entries that are not fields are left out. Numbers are finite and not negative, unless an annotation
-    such as `Annotated[int, (1, 9)]` states other bounds.
+    such as `Annotated[int, (1, 9)]` states other bounds; `Annotated[str, ("a", "b")]` states all texts. A text may
+    stand for a path.
     """
     origin, arguments = get_origin(kind), get_args(kind)
-    if origin is UnionType:
-        return None if value is None else typed_value(value, arguments[0])
+    if origin in (UnionType, Union):
+        return typed_value(value, type(value) if type(value) in arguments else arguments[0])
     if origin is tuple:
         return tuple(typed_value(each, arguments[0]) for each in typed_value(value, list))
+    if origin is Annotated and arguments[0] is str:
+        if value not in arguments[1]:
+            raise ValueError(f"{value!a:.40} is none of {', '.join(arguments[1])}")
+        return value
     if origin is Annotated:
         return number_of(value, arguments[0], least=arguments[1][0], most=arguments[1][1])
     kind = origin or kind
     if kind in (int, float):
         return number_of(value, kind, least=0)
-    if hasattr(kind, "__dataclass_fields__"):
+    if kind is Path and isinstance(value, str):
+        return Path(value)
+    if hasattr(kind, "__dataclass_fields__") and not isinstance(value, kind):
         hints = get_type_hints(kind, include_extras=True)
         return kind(**{name: typed_value(value[name], hint) for name, hint in hints.items() if name in value})
     if issubclass(kind, Enum):

@@ -21,6 +21,9 @@ FRAMES_ANALYZED = 8
 #: Largest exposure in either direction, in stops: 2 ** 15 times white still fits into a half float.
 MAX_EXPOSURE = 15
 
+#: The largest one with an anchor: powers of two that single precision holds.
+MOST_STOPS = 100
+
 #: The sample types of linear EXR files; the first is the default.
 DEPTHS = ("half", "float")
 

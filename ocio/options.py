@@ -2,20 +2,21 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
-from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.estimate.options import AnalysisOptions, CheckedFields
 from crfnet_core.photograph.metadata import Device
 
-from .defaults import DEPTHS, OUTPUT_SPACES, PRIMARIES, PRIORS
+from .defaults import DEPTHS, MOST_STOPS, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 
 @dataclass(frozen=True, kw_only=True)
-class EstimateOptions:
+class EstimateOptions(CheckedFields):
     """How responses are estimated."""
 
     model: Path | None = None  # the folder or the name of the model; None for the default model
     threads: int = 0  # of the network; 0 for as many as there are cores
-    prior: str | Path = PRIORS[0]  # which responses to expect: the name of a packaged prior, or a JSON file
+    prior: Path | str = PRIORS[0]  # which responses to expect: the name of a packaged prior, or a JSON file
     camera: str | None = None  # the stored camera whose response is the answer; None to estimate it
     analysis: AnalysisOptions = field(default_factory=AnalysisOptions)
 
@@ -33,20 +34,20 @@ def device_name(device: Device | None) -> str | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlateOptions:
+class PlateOptions(CheckedFields):
     """How linear plates are written."""
 
-    depth: str = DEPTHS[0]  # sample type of the EXR files
-    exposure: float = 0.0  # stops by which the linear values are raised, after the anchor
+    depth: Annotated[str, DEPTHS] = DEPTHS[0]  # sample type of the EXR files
+    exposure: Annotated[float, (-MOST_STOPS, MOST_STOPS)] = 0.0  # stops, added after the anchor
     gray: float | None = None  # encoded brightness that becomes a linear 0.18; by default 1 becomes a linear 1
-    primaries: str = PRIMARIES[0]  # of the encoded plate; "auto" goes by its tags
-    output_space: str = OUTPUT_SPACES[0]
+    primaries: Annotated[str, PRIMARIES] = PRIMARIES[0]  # of the encoded plate; "auto" goes by its tags
+    output_space: Annotated[str, OUTPUT_SPACES] = OUTPUT_SPACES[0]
     overwrite: bool = False  # whether existing files may be replaced
     is_encoded: bool = False  # accepts OpenEXR plates that do not state their encoding, and tags that say linear
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputOptions:
+class OutputOptions(CheckedFields):
     """Which files an estimate has beside its LUTs, config and document."""
 
     has_sheet: bool = True  # the picture, which needs matplotlib

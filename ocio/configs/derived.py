@@ -22,7 +22,7 @@ from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
 from ..luts.rgb_lut import lut_identity
 from ..output_files import all_or_none, check_targets, distinct_names, folded
-from .file_rules import LINEAR_SUFFIX, is_counter_name
+from .file_rules import LINEAR_SUFFIX
 from .files import write_config
 from .looks import Look
 from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, lost_plates, plates_in_config
@@ -63,8 +63,8 @@ def write_derived_config(
     if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
-    spaces, common = _new_spaces(base, looks, others or {})
-    without = add_plate_color_spaces(config, spaces)
+    spaces = _new_spaces(base, looks, others or {})
+    without = add_plate_color_spaces(config, spaces, has_counters=False)
     check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
     files = (target, *(folder / name for name in luts))
@@ -81,7 +81,7 @@ def write_derived_config(
         until_named.enter_context(locked_folder(folder))
         dropped = lost_plates(target, [plate.name for plate in plates])
     new = tuple(plate for plate in plates if plate.name in check)
-    return DerivedConfig(target, files, new, tuple(dict.fromkeys((*common, *without))), tuple(dropped))
+    return DerivedConfig(target, files, new, without, tuple(dropped))
 
 
 def _check_valid(base: ConfigSource) -> None:
@@ -92,20 +92,13 @@ def _check_valid(base: ConfigSource) -> None:
         raise ConfigError("config_refused", path=base.name, reason=problem) from problem
 
 
-def _new_spaces(
-    base: ConfigSource, looks: Sequence[Look], others: Collection[str]
-) -> tuple[list[PlateColorSpace], list[str]]:
-    """Return the color spaces of looks under names that are free, and the file patterns that make no rule."""
-    spaces, common = list[PlateColorSpace](), list[str]()
+def _new_spaces(base: ConfigSource, looks: Sequence[Look], others: Collection[str]) -> list[PlateColorSpace]:
+    """Return the color spaces of looks under names that are free."""
+    spaces = list[PlateColorSpace]()
     for look in looks:
         names, lut_files = [space.name for space in spaces], [*others, *(space.lut_file for space in spaces)]
-        space = _free_space(base, look, names, lut_files)
-        counters = [pattern for pattern in space.file_patterns if is_counter_name(pattern)]
-        patterns = tuple(pattern for pattern in space.file_patterns if pattern not in counters)
-        linear = tuple(each for each in space.linear_patterns if ".#." in each or not is_counter_name(each))
-        spaces.append(replace(space, file_patterns=patterns, linear_patterns=linear))
-        common += counters
-    return spaces, common
+        spaces.append(_free_space(base, look, names, lut_files))
+    return spaces
 
 
 def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:

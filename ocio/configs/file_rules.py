@@ -57,9 +57,16 @@ def linear_patterns(
     return tuple(dict.fromkeys([*named, *frames]))
 
 
-def is_counter_name(name: str) -> bool:
-    """Return whether many files of other people are likely to have a name, or pattern, such as "IMG_0001.JPG"."""
-    name = re.sub(r"[*#]", "0001", name)
+def example(pattern: str) -> str:
+    """Return a name that a pattern stands for."""
+    return re.sub(r"[*#]", "0001", pattern)
+
+
+def is_counter_name(pattern: str) -> bool:
+    """Return whether many files of others are likely to have a name such as "IMG_0001.JPG", unlike "IMG_0001.#.exr"."""
+    if pattern.endswith(".#.exr"):
+        return False
+    name = example(pattern)
     stem = FRAME_NUMBER.sub("", name.rpartition(".")[0] or name).lower()
     return any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
 

@@ -10,7 +10,7 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.files import read_json
 from crfnet_core.types import number_of
 
-from ..defaults import ESTIMATES
+from ..defaults import ESTIMATES, MOST_STOPS
 from ..errors import ConfigError, LutError
 from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
@@ -18,7 +18,7 @@ from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
 from .file_rules import MOST_PATTERNS, plate_pattern
 from .files import load_config, plate_exposure
-from .plate_color_space import MOST_STOPS, PlateColorSpace
+from .plate_color_space import PlateColorSpace
 from .reference_space import LINEAR_NAMES
 
 #: Ends the name of a movie as a photograph: clip.mp4 frame 1.

@@ -1,7 +1,7 @@
 """The color space of a plate, as plain data (`PlateColorSpace`) and as a part of any OpenColorIO config."""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
@@ -12,6 +12,7 @@ import PyOpenColorIO as OCIO
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
 
+from ..defaults import MOST_STOPS
 from ..errors import ConfigError
 from ..output_files import OutputFiles
 from .file_rules import (
@@ -19,6 +20,8 @@ from .file_rules import (
     LINEAR_SUFFIX,
     add_file_rule,
     color_space_of_file,
+    example,
+    is_counter_name,
     linear_patterns,
     plate_pattern,
     plate_rules,
@@ -28,12 +31,6 @@ from .reference_space import linear_space_name, matrix_transform, rec709_to_refe
 
 #: The category of the spaces of files, by which hosts sort their menus.
 CATEGORIES = ["file-io"]
-
-#: A file name for which no plate has a rule.
-USUAL_LINEAR_FILE = "crfnet_linear.exr"
-
-#: The largest exposure up or down, in stops: powers of two that single precision holds.
-MOST_STOPS = 100
 
 
 @dataclass(frozen=True)
@@ -87,29 +84,35 @@ class PlateColorSpace:
         )
 
 
-def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace]) -> tuple[str, ...]:
+def add_plate_color_spaces(
+    config: OCIO.Config, spaces: Sequence[PlateColorSpace], *, has_counters: bool = True
+) -> tuple[str, ...]:
     """Add plates' color spaces and file rules to a config, in place; return the patterns that get no rule.
 
     Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Linear
-    files get a rule where the config takes OpenEXR files for another space than theirs and has theirs; files that
-    several plates have get none. Raise a ConfigError if the config has one of the names already, or cannot convert
-    linear Rec.709 to its reference.
+    files get a rule where the config has their space and does not give it to them by itself; files that several plates
+    have get none, nor do without `has_counters` names that cameras repeat. Raise a ConfigError if the config has one of
+    the names already, or cannot convert linear Rec.709 to its reference.
     """
-    usual = color_space_of_file(config, USUAL_LINEAR_FILE) if config.getMajorVersion() >= 2 else ""
+    rules = [rule for space in spaces for rule in _rules(config, space)]
     without = list[str]()
     for space in spaces:
         _add_color_space(config, space)
-        if config.getMajorVersion() < 2:
-            without += space.file_patterns
-            continue
-        linear = space.linear_primaries and linear_space_name(config, space.linear_primaries)
-        rules = [(space.name, space.name, space.file_patterns)]
-        if space.linear_primaries and linear != usual:
-            rules.insert(0, (space.name + LINEAR_SUFFIX, linear or "", space.linear_patterns))
-        for name, target, patterns in rules:
-            if patterns and not (target and add_file_rule(config, name, target, patterns)):
-                without += patterns
+    for name, target, patterns in rules:
+        counters = [] if has_counters else [pattern for pattern in patterns if is_counter_name(pattern)]
+        own = [pattern for pattern in patterns if pattern not in counters]
+        is_added = not own or (config.getMajorVersion() >= 2 and target and add_file_rule(config, name, target, own))
+        without += counters if is_added else patterns
     return tuple(dict.fromkeys(without))
+
+
+def _rules(config: OCIO.Config, space: PlateColorSpace) -> Iterator[tuple[str, str, Sequence[str]]]:
+    """Yield the name, the color space and the patterns of a plate's rules; "" is a space that the config lacks."""
+    if space.linear_primaries and config.getMajorVersion() >= 2:
+        linear = linear_space_name(config, space.linear_primaries) or ""
+        others = [each for each in space.linear_patterns if color_space_of_file(config, example(each)) != linear]
+        yield space.name + LINEAR_SUFFIX, linear, others
+    yield space.name, space.name, space.file_patterns
 
 
 def _add_color_space(config: OCIO.Config, space: PlateColorSpace) -> None:

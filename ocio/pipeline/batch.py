@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
+from crfnet_core.estimate.options import CheckedFields
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes, escaped_name
 from crfnet_core.posterior import Prior
@@ -29,7 +30,7 @@ from .records import PhotographRecord, RecordFile
 
 
 @dataclass(frozen=True, kw_only=True)
-class Batch(ABC):
+class Batch(CheckedFields, ABC):
     """Many photographs: the folder for everything, and how they are estimated and linearized."""
 
     out: Path

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Self
 
+from crfnet_core.errors import check_kinds
 from crfnet_core.estimate.analysis import CutPhotograph, cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
@@ -111,6 +112,8 @@ def estimate_files(
         If the network, the prior or the camera cannot be loaded, a photograph cannot be read or is smaller than a
         window, or a file has a published curve.
     """
+    for source in sources:
+        check_kinds(sources=(source, PlateSource))
     camera = find_camera(options.camera) if options.camera is not None else None  # first, so as to refuse a wrong name
     prior, network = Prior.load(options.prior), load_network(options.model, options.threads)
     analyzed = list(_cut_photographs(sources, options.analysis))

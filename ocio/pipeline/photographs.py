@@ -24,7 +24,7 @@ def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
     record. Raise PlateError if a folder holds no photograph or cannot be read.
     """
     photographs: dict[Path, Path] = {}
-    for name in names:
+    for name in map(Path, [names] if isinstance(names, str | Path) else names):
         if not is_folder(name):
             photographs[name] = Path()
             continue

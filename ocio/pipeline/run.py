@@ -5,9 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, as_completed
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from crfnet_core.errors import CRFNetError
+from crfnet_core.errors import CRFNetError, check_kinds
+from crfnet_core.estimate.options import checked_option
 from crfnet_core.types import Progress, cores, show_progress
 
 from ..errors import PlateError
@@ -19,6 +20,9 @@ from .workers import worker_pool
 
 #: How often, and after how many seconds each, the record of files that another run has just written is looked for.
 RECORD_TRIALS, RECORD_SECONDS = 10, 0.1
+
+#: Processes that may be asked for.
+MOST_WORKERS = 1024
 
 
 def run_batch(
@@ -54,6 +58,9 @@ def run_batch(
         If the folder holds results of other options or cannot be used, the response, the prior or the network cannot be
         read, a process dies, or no scheduler answers; not if a photograph is bad.
     """
+    check_kinds(photographs=(photographs, Mapping))
+    workers = checked_option("workers", workers, Annotated[int, (1, MOST_WORKERS)] | None)
+    photographs = {Path(photo): _place(place) for photo, place in photographs.items()}
     batch.check()
     records = batch.records.read()
     tasks = plan_tasks(batch, photographs, records)
@@ -67,6 +74,14 @@ def run_batch(
             ended[record.place] = record
             show_progress(progress, len(ended), len(tasks))
     return batch.finished([ended[task.place] for task in tasks])
+
+
+def _place(place: Path) -> Path:
+    """Return the folder of a photograph's files in the output's; raise CRFNetError if it leads out of it."""
+    place = checked_option("photographs", place, Path)
+    if place.is_absolute() or ".." in place.parts:
+        raise CRFNetError("bad_option", name="photographs", problem=f"{place} leads out of the output folder")
+    return place
 
 
 def _known(task: Task, record: PhotographRecord | None) -> PhotographRecord | None:

@@ -225,8 +225,6 @@ def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
 def _scale(light: PlateLight, options: PlateOptions) -> float:
     """Return the factor of the exposure, after checking that the sample type can hold the linear values."""
     matrix = np.eye(3) if light.space.matrix is None else light.space.matrix
-    if options.depth not in SAMPLE_TYPES:
-        raise PlateError("unknown_depth", depth=options.depth)
     scale = float(2.0 ** min(light.stops, 1000))  # more would be an OverflowError
     peak = float(np.abs(light.lut.values).max() * np.abs(matrix).sum(axis=1).max()) * scale
     if not 0 < scale < np.inf or not peak <= float(np.finfo(np.float32).max):

@@ -40,8 +40,6 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
     """Return the primaries of a plate by its tags ("auto"; Rec.709 without any), or by a choice such as "p3"."""
     if choice in PHOTOGRAPHIC:
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
-    if choice != PRIMARIES[0]:
-        raise PlateError("unknown_primaries", primaries=choice, choices=", ".join(PRIMARIES))
     if tags.source or tags.transfer:  # by convention, only pictures for a display are in Rec.709
         return PlatePrimaries(tags.primaries, tags.source or tags.transfer_source)
     return PlatePrimaries(REC709, BY_CONVENTION)
@@ -96,8 +94,6 @@ class LinearSpace:
 
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
     """Return the space of a plate's linear values, one of `TARGETS`; of unknown primaries ACES is refused."""
-    if output not in TARGETS:
-        raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))
     if plate.primaries is not None:
         return LinearSpace(plate.primaries, TARGETS[output] or plate.primaries)
     if output.startswith("ACES"):

@@ -18,6 +18,7 @@ from crfnet.output_files import OutputFiles
 from crfnet.pipeline import estimates
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
+from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family
@@ -42,6 +43,25 @@ def options(fixed_model):
 
 
 class TestEstimates:
+    def test_a_batch_takes_texts_as_paths_and_refuses_other_kinds_before_it_begins(self, plate, options, tmp_path):
+        outputs = OutputOptions(has_sheet=False, has_linear=False)
+        batch = pipeline.EstimateBatch(out=f"{tmp_path}/out", options=options, plates=PlateOptions(), outputs=outputs)
+        for facts in (
+            {"workers": 0},
+            {"workers": True},
+            {"photographs": {plate: "../out2"}},
+            {"photographs": {plate: 1}},
+        ):
+            with refused(CRFNetError, "bad_option", name=next(iter(facts))):
+                pipeline.run_batch(batch, **{"photographs": {plate: ""}, **facts})
+        with refused(CRFNetError, "argument_kind"):
+            pipeline.run_batch(batch, [plate])
+        with refused(CRFNetError, "argument_kind"):
+            pipeline.estimate_files([plate], options)
+        assert not (tmp_path / "out").exists()
+        found = pipeline.find_photographs(str(plate), batch.out)
+        assert [record.error for record in pipeline.run_batch(batch, found, workers=1)] == [""]
+
     def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
         found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
         assert [str(facts.entry) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2

@@ -17,6 +17,9 @@ from crfnet_core.photograph.image_io.iso_boxes import find_box
 #: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
 _LINEAR_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
 
+#: The head of a box of compressed EXIF or XMP, behind its size; reading it takes a decoder of Brotli.
+_COMPRESSED = re.compile(rb"brob(Exif|xml )")
+
 #: The start of a codestream, which stands alone, in one box or in numbered ones; bytes behind it that are read.
 _START, _HEAD = re.compile(rb"(\A|jxlc|jxlp.{4})\xff\x0a", re.DOTALL), 4096
 
@@ -45,6 +48,12 @@ def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
     if not stored.is_xyb:
         header.attribute("oiio:BitsPerSample", stored.bits)
     return header
+
+
+def has_compressed_metadata(path: Path) -> bool:
+    """Return whether EXIF or XMP is compressed, and so not read."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        return bool(_COMPRESSED.search(content))
 
 
 def jxl_header(path: Path) -> JxlHeader:

@@ -27,7 +27,7 @@ from crfnet_core.photograph.image_io.header_checks import (
 )
 from crfnet_core.photograph.image_io.jp2_files import with_jp2_boxes
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
-from crfnet_core.photograph.image_io.jxl_files import JxlHeader, jxl_header, with_jxl_boxes
+from crfnet_core.photograph.image_io.jxl_files import JxlHeader, has_compressed_metadata, jxl_header, with_jxl_boxes
 from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
@@ -108,6 +108,7 @@ class _OpenFile:
     jpeg: JpegFile | None
     has_gain_map: bool = False
     is_turned: bool = False  # whether the decoder has turned it upright
+    is_unread: bool = False  # whether its metadata is compressed
 
     @property
     def turn(self) -> Turn:
@@ -118,7 +119,8 @@ class _OpenFile:
         """Return the metadata of the upright picture."""
         metadata = metadata_of_header(self._upright_header(), self.kind, self.jpeg.metadata if self.jpeg else None)
         has_gain_map = self.has_gain_map or metadata.has_gain_map
-        return replace(metadata, is_turned=self.is_turned or self.turn != UPRIGHT, has_gain_map=has_gain_map)
+        is_turned = self.is_turned or self.turn != UPRIGHT
+        return replace(metadata, is_turned=is_turned, has_gain_map=has_gain_map, is_unread=self.is_unread)
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
@@ -206,7 +208,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
                     yield replace(file, path=path, has_gain_map=True)
         else:
             header = with_color_chunks(header, path) if kind == "PNG" else header
-            yield _OpenFile(path, kind, source, header, jpeg, is_turned=jxl.orientation > 1)
+            is_unread = kind == "JPEG XL" and has_compressed_metadata(path)
+            yield _OpenFile(path, kind, source, header, jpeg, is_turned=jxl.orientation > 1, is_unread=is_unread)
     finally:
         source.close()
 

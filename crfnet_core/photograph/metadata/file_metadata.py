@@ -40,6 +40,7 @@ class FileMetadata:
     has_gain_map: bool = False  # whether the picture is the base of an HDR picture
     color: ColorTags = field(default_factory=ColorTags)  # the tags of its primaries and of its encoding
     is_turned: bool = False  # whether the reader has turned the picture upright
+    is_unread: bool = False  # whether EXIF or XMP is compressed, so that the camera is in the file and not here
 
     def __post_init__(self) -> None:
         kinds = {name: kind for name, kind in get_type_hints(type(self)).items() if isinstance(kind, type)}

@@ -160,7 +160,7 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     """Return whether the picture was scaled, by the size in EXIF and by usual sizes; None if it may have been cut."""
     shorter, longer = size = tuple(sorted((metadata.width, metadata.height)))
     exif_size = tuple(sorted(metadata.exif_size or size))
-    if shorter <= 0:
+    if shorter <= 0 or metadata.is_unread:
         return None
     if exif_size != size:
         return _is_scaled_from(exif_size, size)
@@ -194,7 +194,7 @@ def _is_scaled_from(before: tuple[int, ...], now: tuple[int, ...]) -> bool | Non
 
 def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
     """Yield the words for an origin, one part of a sentence each."""
-    yield _maker_words(origin)
+    yield _maker_words(origin, metadata)
     yield from filter(None, (_program_words(origin), _scaling_words(origin, metadata)))
     if metadata.is_turned:
         yield "turned upright, as the file asks"
@@ -204,12 +204,12 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         yield f"{metadata.file_format} files hold {origin.encoding}"
 
 
-def _maker_words(origin: FileOrigin) -> str:
+def _maker_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     """Return the renderer or the camera in words."""
     if origin.renderer:
         return f"rendered by {origin.renderer}"
     if not origin.camera:
-        return "the file names no camera"
+        return "its EXIF is compressed and was not read" if metadata.is_unread else "the file names no camera"
     return f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
 
 

@@ -19,11 +19,13 @@ def run(arguments: argparse.Namespace) -> None:
 def _add(arguments: argparse.Namespace) -> None:
     paths = dict.fromkeys(path.resolve() for path in arguments.looks)
     looks = [look for path in paths for look in read_looks(path)]
-    derived = write_derived_config(find_config(arguments.base), arguments.out, looks, overwrite=arguments.overwrite)
+    base = find_config(arguments.base)
+    derived = write_derived_config(base, arguments.out, looks, overwrite=arguments.overwrite)
     plates = [asdict(plate) for plate in derived.plates]
     document = {"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)}
     document |= {"dropped": list(derived.dropped)} if derived.dropped else {}
     reason = "many cameras give such names, several plates have it, or the config has no space for it"
+    reason = reason if base.config.getMajorVersion() >= 2 else "its base, of profile version 1, has no file rules"
     notes = [f"note: file rules give {pattern} no space of its own: {reason}" for pattern in derived.without_rule]
     notes += lost_lines(derived.path, derived.dropped)
     lines = [f"Written: {derived.path}", *_plate_lines(derived.plates), *notes]

@@ -3,6 +3,7 @@
 import argparse
 
 from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.posterior import Verdict
 
 from ... import pipeline
@@ -43,6 +44,7 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
     if movie := movie_of(sequence):
         check_progressive(movie)
     if not sequence.numbers and FramePattern.parse(arguments.out) and not FramePattern.parse(sequence.paths[0]):
+        file_kind(sequence.paths[0])  # refuses what is empty or of no known format, for this reason
         raise CommandError("pattern_for_file", path=arguments.out, plate=sequence.paths[0])
     targets = linear_targets(arguments.out, sequence)
     folder = arguments.out.parent

@@ -8,10 +8,13 @@ from PIL import Image, ImageCms
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.jxl_files import JxlHeader, with_jxl_boxes
+from crfnet_core.photograph.metadata.origin import file_origin
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.crafted_files import xmp_packet
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refused
+
+NO_CAMERA = "the file names no camera"
 
 
 def test_xmp_does_not_turn_avif(tmp_path):
@@ -86,6 +89,15 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
     for read in (read_codes, read_metadata):
         with refused(PhotoError, "jxl_linear"):
             read(tmp_path / "a.jxl")
+
+
+@pytest.mark.parametrize(("box", "words"), [(b"brob", "its EXIF is compressed and was not read"), (b"skip", NO_CAMERA)])
+def test_compressed_exif_of_jpeg_xl_is_said_not_to_be_read(tmp_path, box, words):
+    content = write_image(tmp_path / "a.jxl", colored_ramp(8), compression="jpegxl:100").read_bytes()
+    assert content.count(b"brobExif") == 1, "OpenImageIO compresses it, as cjxl does"
+    (tmp_path / "a.jxl").write_bytes(content.replace(b"brobExif", box + b"Exif"))
+    origin = file_origin(read_metadata(tmp_path / "a.jxl"))
+    assert (origin.words[0], origin.is_scaled) == (words, True if words == NO_CAMERA else None)
 
 
 def test_exif_and_xmp_of_jpeg_xl_are_read_and_do_not_turn_it(tmp_path):

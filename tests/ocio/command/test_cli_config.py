@@ -46,13 +46,21 @@ def test_files_without_a_rule_are_named(crfnet, folder, tmp_path):
     looks = [folder, write_look(tmp_path / "night"), write_look(tmp_path / "day", ["IMG_0042.JPG"])]
     done = crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "a", *looks)
     notes = [line for line in done.out.splitlines() if line.startswith("note: ")]
-    assert [note.split()[4] for note in notes] == ["IMG_0042.JPG", "plate01.jpg"]
+    assert [note.split()[4] for note in notes] == ["plate01.jpg", "IMG_0042.JPG"]
     assert "no file rule" not in done.out
     assert "[pP][lL][aA][tT][eE]01\\.[jJ][pP][gG])" not in done.out
     document = json.loads(crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "b", *looks, "--json").out)
     assert document["config"] == str(tmp_path / "b" / "config.ocio")
-    assert document["without_rule"] == ["IMG_0042.JPG", "plate01.jpg"]
+    assert document["without_rule"] == ["plate01.jpg", "IMG_0042.JPG"]
     assert [plate["name"] for plate in document["plates"]] == [NAME, f"{NAME} (night)", "CRF IMG_0042"]
+
+
+def test_a_base_of_profile_1_is_said_to_have_no_rules(crfnet, tmp_path):
+    views, spaces = "{d: [!<View> {name: v, colorspace: lin_srgb}]}", "[!<ColorSpace> {name: lin_srgb}]"
+    (tmp_path / "base.ocio").write_text(f"ocio_profile_version: 1\ndisplays: {views}\ncolorspaces: {spaces}\n")
+    look = write_look(tmp_path / "look")
+    done = crfnet("config", "add", "--base", tmp_path / "base.ocio", "--out", tmp_path / "show", look)
+    assert done.out.endswith("plate01.jpg no space of its own: its base, of profile version 1, has no file rules\n")
 
 
 def test_plates_that_a_replaced_config_no_longer_has_are_named(crfnet, folder, tmp_path):

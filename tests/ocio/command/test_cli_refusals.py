@@ -60,6 +60,7 @@ BAD = [
     ("frames_of_each", "linearize plate.jpg --each --frames 1-2"),
     ("lut_unreadable", "linearize plate.jpg --each --lut none.spi1d"),
     ("several_plates", "linearize plate.jpg more.jpg"),
+    ("photograph_is_empty", "linearize empty.jpg --lut good.spi1d --out ../out/a.%04d.exr"),
     ("pattern_for_file", "linearize plate.jpg --lut good.spi1d --out ../out/a.%04d.exr"),
     ("not_a_folder", "linearize plate.jpg --lut good.spi1d --out file/a.exr"),
     ("target_is_plate", "linearize linear.exr --lut good.spi1d --out linear.exr --overwrite"),

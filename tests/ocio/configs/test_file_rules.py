@@ -13,6 +13,7 @@ from crfnet.configs.file_rules import (
     rule_regex,
 )
 from crfnet.configs.portable import portable_config
+from crfnet.configs.sources import find_config
 from tests.helpers.configs import loaded, rule_names
 from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
 
@@ -54,6 +55,8 @@ def test_several_patterns_are_one_rule():
     assert result == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
     assert list(plate_rules(config, "plate").values()) == ["ACEScct"]
 
+
+LINEAR = "Linear Rec.709 (sRGB)"
 
 CAMERA_NAMES = (
     "IMG_0042.JPG img_e0042.heic DSC_1234.NEF DSCF0001.jpg DSC01234.ARW _MG_7081.CR2 P1010001.JPG GOPR0123.JPG"
@@ -101,6 +104,21 @@ def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path
     studio.write_text(config.serialize())
     done = add(studio, tmp_path / "new", write_look(tmp_path / "look", interop_id="lin_adobergb_scene"))
     assert done.without_rule == ("plate01_linear.exr",)
+
+
+def test_linear_frames_have_a_rule_where_the_base_knows_linear_files_by_their_names_only(tmp_path):
+    base = find_config(STUDIO).config
+    (rules := base.getFileRules()).insertRule(0, "linear", LINEAR, "*_linear*", "exr")
+    base.setFileRules(rules)
+    (tmp_path / "base.ocio").write_text(base.serialize())
+    done = add(tmp_path / "base.ocio", tmp_path / "new", write_look(tmp_path / "look", ["bg.0001.jpg"]))
+    names = ("bg.0002.exr", "bg.0002_linear.exr", "other.0002.exr")
+    assert [space_of(loaded(done.path), name) for name in names] == [LINEAR, LINEAR, "ACES2065-1"]
+
+
+def test_linear_frames_of_a_name_that_cameras_repeat_are_named(tmp_path):
+    look = write_look(tmp_path / "look", ["shot_0001.png"], sequence="shot_#.png")
+    assert set(add(STUDIO, tmp_path / "new", look).without_rule) == {"shot_#.png", "shot_#.exr"}
 
 
 @pytest.mark.parametrize("order", ["abc", "acb", "bca", "cab"])

@@ -110,8 +110,9 @@ def test_plates_are_never_replaced(tmp_path, plate, target):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        ({"depth": "double"}, "unknown_depth"),
-        *(({"exposure": stops}, "exposure_out_of_range") for stops in (float("nan"), 5000, -5000)),
+        *(({name: "other"}, "bad_option") for name in ("depth", "exposure", "gray", "primaries", "output_space")),
+        *(({"exposure": stops}, "bad_option") for stops in (float("nan"), 5000, -5000)),
+        ({"exposure": 100, "gray": 1e-12}, "exposure_out_of_range"),
         ({"exposure": 17}, "exceeds_half"),
         ({"workers": 0}, "bad_workers"),
         ({"frames": "1-3"}, "single_file"),
