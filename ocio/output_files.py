@@ -18,11 +18,9 @@ from .errors import PlateError
 from .luts.files import WRITERS
 from .options import OutputOptions
 
-#: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
-LONGEST_STEM = 200
-
-#: Most bytes of a hint behind it: see `distinct_names`.
-LONGEST_HINT = 32
+#: Most bytes of a stem (file systems take 255 for a name, of which suffixes and temporary names need some), and of a
+#: hint behind it: see `distinct_names`.
+LONGEST_STEM, LONGEST_HINT = 200, 32
 
 #: How the name of a sheet ends, after the stem.
 SHEET_ENDING = "_sheet.png"

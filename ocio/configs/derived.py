@@ -63,7 +63,9 @@ def write_derived_config(
     if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
-    spaces = _new_spaces(base, looks, others or {})
+    spaces = list[PlateColorSpace]()
+    for look in looks:
+        spaces.append(_free_space(base, look, spaces, others or {}))
     without = add_plate_color_spaces(config, spaces, has_counters=False)
     check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
@@ -92,21 +94,14 @@ def _check_valid(base: ConfigSource) -> None:
         raise ConfigError("config_refused", path=base.name, reason=problem) from problem
 
 
-def _new_spaces(base: ConfigSource, looks: Sequence[Look], others: Collection[str]) -> list[PlateColorSpace]:
-    """Return the color spaces of looks under names that are free."""
-    spaces = list[PlateColorSpace]()
-    for look in looks:
-        names, lut_files = [space.name for space in spaces], [*others, *(space.lut_file for space in spaces)]
-        spaces.append(_free_space(base, look, names, lut_files))
-    return spaces
-
-
-def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
-    """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
+def _free_space(
+    base: ConfigSource, look: Look, spaces: Sequence[PlateColorSpace], others: Collection[str]
+) -> PlateColorSpace:
+    """Return a plate's color space under a name, and with a LUT file, that neither the base nor `spaces` have."""
     file, config = Path(look.space.lut_file), base.config
-    taken = {folded(name) for name in (*names, *_other_names(config))}
+    taken = {folded(name) for name in (*(space.name for space in spaces), *_other_names(config))}
     aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
-    used = {folded(name) for name in lut_files} | _names_on_path(base)
+    used = {folded(name) for name in (*others, *(space.lut_file for space in spaces))} | _names_on_path(base)
     text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
     if re.search(r"\$[\w{]|%.+%", text):  # other values of variables lead to other files, but to none of this name
         file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
