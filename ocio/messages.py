@@ -54,9 +54,6 @@ SENTENCES: Mapping[str, str] = {
     "target_is_plate": "{path}: is one of the plates, which are never replaced; choose another name",
     "too_many_frames": "frames {frames!r}: more than {most} frames; give fewer",
     "transfer_differs": "{path}: its transfer function is {transfer}, but {other} in {first}; process each by itself",
-    "unknown_depth": "depth {depth!r} is unknown; choose half or float",
-    "unknown_output_space": "output space {space!r} is unknown; choose one of {spaces}",
-    "unknown_primaries": "primaries {primaries!r} are unknown; choose one of {choices}",
     # luts
     "gray_is_black": "a brightness of {gray:g} is black in this response; pick a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
