@@ -42,11 +42,8 @@ PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
 #: default); the plate's own primaries; and the spaces of ACES.
 OUTPUT_SPACES = ("scene_linear", "plate", "ACEScg", "ACES2065-1")
 
-#: Estimation error (E_est) of gamma 2.2 on 29 camera bodies (P4).
-GAMMA_ERROR = 3.71
-
-#: Shape error of gamma 2.2 on these bodies, in stops.
-GAMMA_SHAPE_ERROR = 0.74
+#: Estimation error (E_est) of gamma 2.2 on 29 camera bodies (P4), and its shape error in stops.
+GAMMA_ERROR, GAMMA_SHAPE_ERROR = 3.71, 0.74
 
 #: Error of the place of white, in stops: root mean square over 43 camera bodies (P4, with caution).
 WHITE_ERROR = 0.26

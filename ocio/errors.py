@@ -8,14 +8,11 @@ from crfnet_core.messages import SENTENCES as CORE_SENTENCES
 
 from .messages import SENTENCES
 
-#: The sentences of both packages: writers in `crfnet_core` raise these errors, too.
-_SENTENCES: Mapping[str, str] = {**CORE_SENTENCES, **SENTENCES}
-
 
 class OutputError(CRFNetError):
-    """Base of the errors of this package."""
+    """Base of the errors of this package, which writers in `crfnet_core` raise, too."""
 
-    sentences = _SENTENCES
+    sentences: Mapping[str, str] = {**CORE_SENTENCES, **SENTENCES}
 
 
 class LutError(OutputError):

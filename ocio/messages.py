@@ -30,6 +30,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_channels": "{path}: needs channels R, G and B, or a gray one, of half or float samples; found {channels}",
     "exr_codes": "{path}: most values lie above {most}; brightness lies in [0, 1]: divide code values by the largest",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
+    "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     "exr_not_finite": "{path}: {count} of its pixels hold NaN or infinity, for which no LUT has an entry; replace them",
     "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; crop it, or keep R, G, B and A",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
@@ -53,8 +54,6 @@ SENTENCES: Mapping[str, str] = {
     "target_is_plate": "{path}: is one of the plates, which are never replaced; choose another name",
     "too_many_frames": "frames {frames!r}: more than {most} frames; give fewer",
     "transfer_differs": "{path}: its transfer function is {transfer}, but {other} in {first}; process each by itself",
-    # exr
-    "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts
     "gray_is_black": "a brightness of {gray:g} is black in this response; pick a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
@@ -95,9 +94,8 @@ SENTENCES: Mapping[str, str] = {
     "config_unreadable": "{path}: cannot be read ({reason}); choose another config",
     "config_variable_unset": "{name}: the environment variable {variable} is not set; name a config",
     "config_variables": "{path}: declares more than {most} variables, or some that multiply; write their values out",
-    "config_without_rec709": (
-        "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one of them"
-    ),
+    "config_without_rec709": "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one"
+    " of them",
     "exposure_not_finite": "{name}: the exposure is {exposure}; give at most {most} stops up or down",
     "folder_without_look": "{path}: holds no estimate; give the folder, the JSON or a LUT of one",
     "lut_name_is_variable": "{name}: OpenColorIO takes $ and % in {lut_file!r} for variables; rename it",

@@ -1,7 +1,5 @@
 """Which files an estimate writes, and whether they may be written: checked before any work is done."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import re
@@ -10,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.files import check_target, cut_to_bytes
 from crfnet_core.staging import remove_abandoned, staged_files
@@ -19,11 +18,9 @@ from .errors import PlateError
 from .luts.files import WRITERS
 from .options import OutputOptions
 
-#: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
-LONGEST_STEM = 200
-
-#: Most bytes of a hint behind it: see `distinct_names`.
-LONGEST_HINT = 32
+#: Most bytes of a stem (file systems take 255 for a name, of which suffixes and temporary names need some), and of a
+#: hint behind it: see `distinct_names`.
+LONGEST_STEM, LONGEST_HINT = 200, 32
 
 #: How the name of a sheet ends, after the stem.
 SHEET_ENDING = "_sheet.png"
@@ -42,7 +39,7 @@ class OutputFiles:
     forward: tuple[Path, ...] = ()  # the response itself in each format; none if it is not written
 
     @classmethod
-    def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> OutputFiles:
+    def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> Self:
         """Return the files that the options (by default the usual ones) ask for of photographs with one response."""
         stem, outputs = plain_stem(photos[0]), outputs or OutputOptions()
         return cls(

@@ -1,18 +1,22 @@
-"""The `crfnet` command: exit codes and error lines; `crfnet.cli.arguments` parses, `crfnet.cli.commands` works."""
+"""The `crfnet` command: exit codes, error lines and signals; `crfnet.cli.arguments` parses, the commands work."""
 
 import argparse
 import os
 import signal
 import sys
-from collections.abc import Sequence
-from contextlib import suppress
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 
 from ..messages import NOT_TEXT
 from .arguments.command_line import build_parser
 from .arguments.parts import BAD_INPUT
-from .interruption import interruptible
 from .streams import complete_streams, own_stderr, shown
+
+#: The signals that end a run, as far as the system has them: Control-C, and what a render farm, a closed terminal or a
+#: limit of time sends.
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGXCPU", "SIGUSR1", "SIGUSR2")
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -39,6 +43,34 @@ def main(argv: Sequence[str] | None = None) -> int:
                 raise
             _print_error("crfnet: interrupted")
             return 128 + next(iter(caught), signal.SIGINT)
+
+
+@contextmanager
+def interruptible() -> Iterator[list[int]]:
+    """Turn the first signal during a block into a KeyboardInterrupt, and yield a list that then holds its number.
+
+    Further ones must not disturb the cleaning up. A signal that is ignored, as under nohup, or that the caller handles
+    stays as it is. Outside the main thread, where Python handles no signals, nothing changes.
+    """
+    caught: list[int] = []
+
+    def interrupt(number: int, _: object) -> None:
+        if not caught:
+            caught.append(number)
+            raise KeyboardInterrupt
+
+    ordinary = (signal.SIG_DFL, signal.default_int_handler)
+    earlier = {}
+    if threading.current_thread() is threading.main_thread():
+        numbers = [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
+        earlier = {number: signal.getsignal(number) for number in numbers if signal.getsignal(number) in ordinary}
+    for number in earlier:
+        signal.signal(number, interrupt)
+    try:
+        yield caught
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
 
 
 def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:

@@ -63,7 +63,9 @@ def write_derived_config(
     if folder.is_dir() and any(map(folder.samefile, homes)):
         raise ConfigError("base_would_change", path=folder)
     config, target = _relocated(base), folder / CONFIG_NAME
-    spaces = _new_spaces(base, looks, others or {})
+    spaces = list[PlateColorSpace]()
+    for look in looks:
+        spaces.append(_free_space(base, look, spaces, others or {}))
     without = add_plate_color_spaces(config, spaces, has_counters=False)
     check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
     luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
@@ -92,21 +94,14 @@ def _check_valid(base: ConfigSource) -> None:
         raise ConfigError("config_refused", path=base.name, reason=problem) from problem
 
 
-def _new_spaces(base: ConfigSource, looks: Sequence[Look], others: Collection[str]) -> list[PlateColorSpace]:
-    """Return the color spaces of looks under names that are free."""
-    spaces = list[PlateColorSpace]()
-    for look in looks:
-        names, lut_files = [space.name for space in spaces], [*others, *(space.lut_file for space in spaces)]
-        spaces.append(_free_space(base, look, names, lut_files))
-    return spaces
-
-
-def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
-    """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
+def _free_space(
+    base: ConfigSource, look: Look, spaces: Sequence[PlateColorSpace], others: Collection[str]
+) -> PlateColorSpace:
+    """Return a plate's color space under a name, and with a LUT file, that neither the base nor `spaces` have."""
     file, config = Path(look.space.lut_file), base.config
-    taken = {folded(name) for name in (*names, *_other_names(config))}
+    taken = {folded(name) for name in (*(space.name for space in spaces), *_other_names(config))}
     aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
-    used = {folded(name) for name in lut_files} | _names_on_path(base)
+    used = {folded(name) for name in (*others, *(space.lut_file for space in spaces))} | _names_on_path(base)
     text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
     if re.search(r"\$[\w{]|%.+%", text):  # other values of variables lead to other files, but to none of this name
         file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
@@ -134,18 +129,15 @@ def _relocated(base: ConfigSource) -> OCIO.Config:
     folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
     config.clearSearchPaths()
     if base.path is not None:
+        home = base.path.parent
+        if "$" in str(home) or str(home).count("%") > 1:
+            raise ConfigError("base_folder_is_variable", path=home)
         for folder in folders:
-            for path in _absolute_paths(folder, base.path.parent):
-                config.addSearchPath(path)
+            config.addSearchPath(str(home / folder))
+            if folder.startswith(("$", "%")):  # a variable, whose value may be an absolute path
+                config.addSearchPath(folder)
     config.addSearchPath(".")
     return config
-
-
-def _absolute_paths(folder: str, home: Path) -> list[str]:
-    """Return the absolute search paths for one of a config in `home`; the value of a variable may be absolute, too."""
-    if "$" in str(home) or str(home).count("%") > 1:
-        raise ConfigError("base_folder_is_variable", path=home)
-    return [str(home / folder), *([folder] if folder.startswith(("$", "%")) else [])]
 
 
 def _names_on_path(base: ConfigSource) -> set[str]:
@@ -155,6 +147,5 @@ def _names_on_path(base: ConfigSource) -> set[str]:
         return names
     for folder in [*context.getSearchPaths()] or ["."]:
         with suppress(OSError):
-            files = (base.path.parent / context.resolveStringVar(folder)).iterdir()
-            names |= {folded(file.name) for file in files}
+            names |= {folded(file.name) for file in (base.path.parent / context.resolveStringVar(folder)).iterdir()}
     return names

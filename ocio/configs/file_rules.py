@@ -49,7 +49,9 @@ def linear_patterns(
     `stem` is the stem of the plate's files, for example "clip" or "shot.0001"; `plates` is the pattern of a sequence.
     One pattern stands for more than `MOST_PATTERNS` names. A still has no frames: others' renders are called so.
     """
-    named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
+    named = [re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name)) for name in names]
+    if len(names) > MOST_PATTERNS:
+        named = ["*_linear.exr"]
     frames = [plates.rpartition(".")[0] + ".exr"] if "#" in plates else []
     frames += [FRAME_NUMBER.sub("", stem) + ".#.exr"] if is_movie or FRAME_NUMBER.search(stem) else []
     return tuple(dict.fromkeys([*named, *frames]))
@@ -85,8 +87,8 @@ def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence
     Where rules of other plates lead one of the files to another space, none gets the file: all these rules then stand
     behind all others and change nothing; there a third plate of the name finds them.
     """
-    is_shared = [_release(config, pattern, space) for pattern in patterns]
     rules = config.getFileRules()
+    is_shared = [_release(config, rules, pattern, space) for pattern in patterns]
     if any(is_shared):
         _insert_last(rules, name, rule_regex(patterns))
     else:
@@ -111,21 +113,18 @@ def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
     return {regex: space for regex, space in spaces.items() if space != usual}
 
 
-def _release(config: OCIO.Config, pattern: str, space: str) -> bool:
+def _release(config: OCIO.Config, rules: OCIO.FileRules, pattern: str, space: str) -> bool:
     """Take the files of a pattern from plates whose rules lead them to another space; return whether there are some."""
-    rules, same, shared = config.getFileRules(), _same_files(pattern), list[tuple[int, str, str]]()
+    same, shared = _same_files(pattern), list[tuple[int, str, str]]()
     for index in range(rules.getNumEntries() - 1):  # the last one is the default
         name, regex = rules.getName(index), rules.getRegex(index)
         if same.search(regex) and _is_of_plate(config, name) and rules.getColorSpace(index) != space:
             shared.append((index, name, regex))
-    if not shared:
-        return False
     for index, *_ in reversed(shared):
         rules.removeRule(index)
     for _, name, regex in shared:
         _insert_last(rules, name, regex)
-    config.setFileRules(rules)
-    return True
+    return bool(shared)
 
 
 def _insert_last(rules: OCIO.FileRules, name: str, regex: str) -> None:
@@ -146,11 +145,6 @@ def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
     """Return whether a rule of this name belongs to a plate."""
     plate = config.getColorSpace(rule.removesuffix(LINEAR_SUFFIX))
     return plate is not None and plate.getFamily() == FAMILY
-
-
-def _linear_pattern(name: str) -> str:
-    """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
-    return re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name))
 
 
 def _pattern_regex(pattern: str) -> str:

@@ -33,11 +33,9 @@ MOST_VARIABLES, LONGEST_VALUE = 100, 4096
 #: The tags of color spaces; and the names of YAML's anchors and aliases, which stand behind these characters.
 _SPACE, _ANCHOR, _ALIAS = "!<(?:ColorSpace|NamedTransform)>", r"&([^\s\[\]{},]+)", r"\*([^\s\[\]{},]+)"
 
-#: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
-TOLERANCE = 1e-5
-
-#: Brightnesses at which a config and its LUT are compared.
-CHECKED_VALUES = 4096
+#: Largest difference between a config's processor and the LUT, absolute up to a value of 1, relative above; and the
+#: number of brightnesses at which they are compared.
+TOLERANCE, CHECKED_VALUES = 1e-5, 4096
 
 #: Variables by which OpenColorIO shows a part of every config only.
 HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES")
@@ -112,7 +110,10 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
     OCIO.ClearAllCaches()
     try:
         with _whole_configs(), atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
-            temporary.write_text(_serialized(config), encoding="utf-8", newline="\n")
+            text = str(config.serialize())
+            if config.getEnvironmentMode() == OCIO.ENV_ENVIRONMENT_LOAD_ALL:  # OpenColorIO declares that there are none
+                text = text.replace("environment:\n  {}\n", "", 1)
+            temporary.write_text(text, encoding="utf-8", newline="\n")
             loaded = OCIO.Config.CreateFromFile(str(temporary))
             loaded.setWorkingDir(str(Path(path).parent))  # where its LUTs lie
             loaded.validate()
@@ -122,13 +123,6 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
                     raise ConfigError("config_differs_from_lut", name=name, difference=difference)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError("config_invalid", path=path, reason=problem) from problem
-
-
-def _serialized(config: OCIO.Config) -> str:
-    """Return the text of a config; OpenColorIO declares no variables in it where all those of the environment count."""
-    text = str(config.serialize())
-    has_all = config.getEnvironmentMode() == OCIO.ENV_ENVIRONMENT_LOAD_ALL
-    return text.replace("environment:\n  {}\n", "", 1) if has_all else text
 
 
 @contextmanager

@@ -71,10 +71,12 @@ class PlateColorSpace:
         """
         is_movie = photo.suffix.lower() not in (*PHOTOGRAPH_SUFFIXES, ".exr")
         linear = [path.name for path in files.linear]
+        name = files.color_space
         return cls(
-            name=files.color_space,
+            name=name,
             lut_file=files.lut.name,
-            aliases=_aliases(files.color_space),
+            # of "CRF a_b" crf_a_b; of "CRF a-b" none, since it would be the same
+            aliases=(name.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", name) else (),
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_patterns=(file_pattern or plate_pattern(photo.name),),
             exposure=exposure,
@@ -144,11 +146,6 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
     if space.primaries != REC709:
         steps.append(matrix_transform(conversion_matrix(space.primaries, REC709)))
     return OCIO.GroupTransform([*steps, *rec709_to_reference(config)])
-
-
-def _aliases(color_space: str) -> tuple[str, ...]:
-    """Return the alias of a color space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
-    return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,6 @@ from crfnet_core.colorimetry import REC709
 
 from .reference_space import matrix_transform, rec709_to_reference, steps_to_reference
 
-#: The names of the two views and view transforms of a plate's color space.
-VIEW_NAMES = ("As photographed ({})", "As photographed with roll-off ({})")
-
 #: The part of the plate's white from which the roll-off differs from the plate, and how slowly it rises from there.
 KNEE, SOFTNESS = 0.8, 1 / 30
 
@@ -28,8 +25,8 @@ SRGB_DISPLAY = "DISPLAY - CIE-XYZ-D65_to_sRGB"
 
 
 def view_names(space: str) -> tuple[str, str]:
-    """Return the names of the views of a plate's color space: clipped at white, and rolled off."""
-    return VIEW_NAMES[0].format(space), VIEW_NAMES[1].format(space)
+    """Return the names of the views and view transforms of a plate's color space: clipped at white, and rolled off."""
+    return f"As photographed ({space})", f"As photographed with roll-off ({space})"
 
 
 def add_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Config:

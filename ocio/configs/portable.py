@@ -11,9 +11,6 @@ from .plate_color_space import CATEGORIES, PlateColorSpace, add_plate_color_spac
 from .plate_views import add_plate_views
 from .reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
 
-#: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
-TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"
-
 #: The primaries of linear plates whose spaces the packaged config does not have.
 ADDED_PRIMARIES = (DISPLAY_P3, REC2020, ADOBE_RGB, PROPHOTO)
 
@@ -27,19 +24,21 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     Its reference and scene-linear space is linear Rec.709 with a D65 white; its color spaces have Blender's names, so
     that Blender's files find them. Raise a ConfigError if two spaces share a name, or one takes a name of the config.
     """
-    config = OCIO.Config.CreateFromStream(_template())
+    template = files("crfnet.configs").joinpath("portable.ocio").read_text(encoding="utf-8")
+    matrix = ", ".join(str([*row, 0])[1:-1] for row in REC709_TO_AP0)
+    config = OCIO.Config.CreateFromStream(template.replace("REC709_TO_AP0", f"[{matrix}, 0, 0, 0, 1]"))
     for primaries in ADDED_PRIMARIES:
-        _add_linear_space(config, primaries)
+        config.addColorSpace(_linear_space(primaries))
     add_plate_color_spaces(config, spaces)
     if not 0 < len(spaces) <= MOST_PLATES_WITH_VIEWS:
         return config
     return add_plate_views(config, [space.name for space in spaces])
 
 
-def _add_linear_space(config: OCIO.Config, primaries: Primaries) -> None:
-    """Add the linear space of some primaries, by its name in Blender, to a config whose reference is linear Rec.709."""
+def _linear_space(primaries: Primaries) -> OCIO.ColorSpace:
+    """Return the linear space of some primaries, by its name in Blender; the reference space is linear Rec.709."""
     *aliases, name = LINEAR_NAMES[primaries]
-    space = OCIO.ColorSpace(
+    return OCIO.ColorSpace(
         name=name,
         aliases=aliases,
         family="Scene-linear",
@@ -49,11 +48,3 @@ def _add_linear_space(config: OCIO.Config, primaries: Primaries) -> None:
         bitDepth=OCIO.BIT_DEPTH_F32,
         toReference=matrix_transform(conversion_matrix(primaries, REC709)),
     )
-    config.addColorSpace(space)
-
-
-def _template() -> str:
-    """Return the text of the packaged config, its matrix filled in as 4 x 4 numbers."""
-    rows = [str([*row, 0])[1:-1] for row in REC709_TO_AP0]
-    text = files("crfnet.configs").joinpath(TEMPLATE).read_text(encoding="utf-8")
-    return text.replace(MATRIX, f"[{', '.join(rows)}, 0, 0, 0, 1]")

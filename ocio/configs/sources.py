@@ -43,12 +43,15 @@ def find_config(name: str) -> ConfigSource:
         if (value := os.environ.get(VARIABLE, "").strip()) in ("", *VARIABLE_NAMES):
             raise ConfigError("config_variable_unset", name=name, variable=VARIABLE)
         return find_config(value)
-    path = None if name.startswith(BUILT_IN) else _config_file(Path(name).expanduser())
-    if path is None:
-        return _built_in(name)
-    if path.suffix.lower() == ".ocioz":
-        raise ConfigError("config_archive", path=path)
-    return ConfigSource(load_config(path), str(path), path)
+    if not name.startswith(BUILT_IN) and (path := _config_file(Path(name).expanduser())):
+        if path.suffix.lower() == ".ocioz":
+            raise ConfigError("config_archive", path=path)
+        return ConfigSource(load_config(path), str(path), path)
+    full = BUILT_IN + name.removeprefix(BUILT_IN)
+    try:
+        return ConfigSource(OCIO.Config.CreateFromFile(full), full, None)
+    except (OCIO.Exception, OCIO.ExceptionMissingFile, UnicodeError):
+        raise ConfigError("config_unknown", name=name, known=", ".join(built_in_names())) from None
 
 
 def role_name(config: str, role: str) -> str:
@@ -64,15 +67,6 @@ def built_in_names() -> tuple[str, ...]:
     """Return the names of OpenColorIO's built-in configs, the short ones first, each with "ocio://"."""
     configs = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
     return tuple(BUILT_IN + name for name in ("default", "cg-config-latest", "studio-config-latest", *configs))
-
-
-def _built_in(name: str) -> ConfigSource:
-    """Return a built-in config by its name, with or without "ocio://"."""
-    full = BUILT_IN + name.removeprefix(BUILT_IN)
-    try:
-        return ConfigSource(OCIO.Config.CreateFromFile(full), full, None)
-    except (OCIO.Exception, OCIO.ExceptionMissingFile, UnicodeError):
-        raise ConfigError("config_unknown", name=name, known=", ".join(built_in_names())) from None
 
 
 def _config_file(path: Path) -> Path | None:

@@ -78,9 +78,8 @@ def _checked_text(path: Path) -> str:
     text = content.decode("utf-8", errors="replace")
     if OTHER_FILES.search(text.replace("\0", "")):  # in UTF-16, too
         raise LutError("lut_refused", path=path, reason="it reads other files")
-    lines = [line.strip() for line in text.split("\n")]
-    begins = [number for number, line in enumerate(lines) if re.search("BEGIN METADATA", line, re.IGNORECASE)]
-    if begins and not any(re.match("END METADATA", line, re.IGNORECASE) for line in lines[begins[0] :]):
+    begin = re.search(r"(?im)^.*BEGIN METADATA", text)
+    if begin and not re.search(r"(?im)^[^\S\n]*END METADATA", text[begin.start() :]):
         raise LutError("lut_refused", path=path, reason="no line END METADATA")  # OpenColorIO would look for ever
     return text
 

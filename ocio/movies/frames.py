@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import OpenImageIO as oiio
+from numpy.typing import NDArray
 
 from crfnet_core.photograph.photo import UPRIGHT, Photo, upright
 from crfnet_core.photograph.yuv import alpha_of, rgb_codes
@@ -130,21 +131,20 @@ def _in_order(movie: MovieStream, container: InputContainer, stream: VideoStream
     yield from [None] * len(pending)
 
 
-def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
-    """Refuse a frame of another size, coding, turn, interlacing or color than the first."""
+def _codes(movie: MovieStream, number: int, frame: VideoFrame, white: int) -> NDArray[Any]:
+    """Return a frame's RGB, upright; refuse one of another size, coding, turn, interlacing or color than the first."""
     picture = Picture.from_frame(movie.path, frame, movie.codec, movie.container)
     if picture != movie.picture:
         raise PlateError("movie_changes", path=movie.path, frame=number, form=picture, first=movie.picture)
+    return upright(rgb_codes(frame, picture.coding, white), picture.turn)
 
 
 def _encoded(movie: MovieStream, number: int, frame: VideoFrame | None) -> EncodedFrame:
     """Return the encoded samples of a frame, upright."""
     if frame is None:
         raise PlateError("frame_undecodable", path=movie.path, frame=number, line=ffmpeg_line(movie.path))
-    _check_form(movie, number, frame)
-    turn, alpha = movie.picture.turn, alpha_of(frame)
-    samples = upright(rgb_codes(frame, movie.picture.coding, WHITE), turn)
-    alpha = None if alpha is None else upright(alpha, turn)
+    samples, alpha = _codes(movie, number, frame, WHITE), alpha_of(frame)
+    alpha = None if alpha is None else upright(alpha, movie.picture.turn)
     return EncodedFrame(samples, WHITE, alpha, _frame_header(movie), movie.color)
 
 
@@ -163,8 +163,7 @@ def _frame_header(movie: MovieStream) -> Any:
 
 def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
     """Return a frame as a photograph, upright."""
-    _check_form(movie, number, frame)
-    codes = upright(rgb_codes(frame, movie.picture.coding, 2**movie.bit_depth - 1), movie.picture.turn)
+    codes = _codes(movie, number, frame, 2**movie.bit_depth - 1)
     name = str(movie.path.with_name(f"{movie.path.name} frame {number}"))
     metadata = replace(movie.file_metadata, is_turned=movie.picture.turn != UPRIGHT)
     return Photo.from_array(codes, color_order="RGB", bit_depth=movie.bit_depth, name=name, metadata=metadata)

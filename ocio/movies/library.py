@@ -102,6 +102,8 @@ def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
             if is_refused or context.width * context.height > MOST_PIXELS:
                 megapixels = MOST_PIXELS // 10**6
                 raise PlateError("movie_too_large", path=path, megapixels=megapixels, line=ffmpeg_line(path))
+            if _dolby_vision_profile(stream) == IPT_PROFILE:
+                raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
             context.thread_count = 1  # several report errors at other frames, of H.264 hardly any
             context.flags |= av.codec.context.Flags.unaligned  # else a crop on the left is cut to 16, 32 or 64 columns
             is_hevc = context.codec.canonical_name == "hevc"  # it passes over errors within a frame
@@ -172,7 +174,7 @@ def _capture_errors() -> None:
     av.logging.set_skip_repeated(False)
 
 
-def dolby_vision_profile(stream: VideoStream) -> int:
+def _dolby_vision_profile(stream: VideoStream) -> int:
     """Return the profile of Dolby Vision, or 0: of the box that FFmpeg would write, as PyAV does not give it."""
     import av
 

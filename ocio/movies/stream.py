@@ -20,18 +20,7 @@ from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
 from .cut_files import is_cut_short
-from .library import (
-    AVI,
-    IPT_PROFILE,
-    MATROSKA,
-    decoded_packet,
-    dolby_vision_profile,
-    ffmpeg_line,
-    is_shown,
-    opened,
-    packets_of,
-    undecodable,
-)
+from .library import AVI, MATROSKA, decoded_packet, ffmpeg_line, is_shown, opened, packets_of, undecodable
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -166,8 +155,6 @@ def check_progressive(movie: MovieStream) -> None:
 def read_stream(path: Path) -> MovieStream:
     """Return the description of a movie, read to its end, or refuse it; only the first frame is decoded."""
     with opened(path) as (container, stream):
-        if dolby_vision_profile(stream) == IPT_PROFILE:
-            raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         codes = _color_codes(stream.codec_context)  # decoding overwrites them
         packets, frame, problems = _survey(container, stream)
         is_cut = any(words in problem for words in CUT for problem in problems) or is_cut_short(path)

@@ -1,8 +1,7 @@
 """The one way from photographs to files, for the command and for the add-on.
 
 estimates    photographs, frames and movies to the response estimated from them; what this needs of the options
-plan         the files of one estimate, checked before any work is done
-delivery     the same, written together
+delivery     the files of one estimate: checked before any work is done, and written together
 batch        many photographs: what they have in common, and the files of each
 each         the two kinds of batches: estimates with their files, and linear EXR
 run          the work of a batch: recorded as it ends, continued when interrupted
@@ -18,11 +17,10 @@ called with (done, total); whatever it raises ends the step, which first removes
 from ..movies.source import sequence_of
 from ..plates.light import anchored_exposure
 from .calibrations import is_pairs, plan_calibration, response_to_compare, write_calibration
-from .delivery import deliver, deliver_estimate, estimated_light
+from .delivery import OutputPlan, deliver, deliver_estimate, estimated_light, plan_outputs
 from .each import EstimateBatch, LinearBatch
 from .estimates import FileEstimate, estimate_files, load_camera_response, photograph_sources, response_lut
 from .photographs import find_photographs
-from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord
 from .run import run_batch
 

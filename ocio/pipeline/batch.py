@@ -15,6 +15,7 @@ from typing import ClassVar
 from crfnet_core.estimate.options import CheckedFields
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes, escaped_name
+from crfnet_core.posterior import Prior
 
 from ..defaults import CONFIG_NAME
 from ..errors import PlateError, error_of_file
@@ -23,12 +24,9 @@ from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, folded, plain_stem
 from ..plates.light import PlateLight, is_finished
 from ..report.words import result_line
-from .estimates import check_network, load_camera_response, response_lut
+from .estimates import load_camera_response, load_network, response_lut
 from .photographs import content_digest, file_state, real_place, unreadable_reason
 from .records import PhotographRecord, RecordFile
-
-#: Bytes that a number behind a stem may need.
-NUMBER_BYTES = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +69,8 @@ class Batch(CheckedFields, ABC):
     def check(self) -> None:
         """Raise a CRFNetError if the response, the prior or the network cannot be read."""
         if not self.response() or self.has_estimates:
-            check_network(self.options)
+            Prior.load(self.options.prior)
+            load_network(self.options.model, self.options.threads)
 
     def digest(self) -> str:
         """Return a digest of the common response and of the options that make two results differ."""
@@ -226,7 +225,7 @@ def _stems(photo: Path) -> Iterator[str]:
     stem = plain_stem(photo)
     yield stem
     for number in itertools.count(2):
-        yield f"{cut_to_bytes(stem, LONGEST_STEM - NUMBER_BYTES)}_{number}"
+        yield f"{cut_to_bytes(stem, LONGEST_STEM - 8)}_{number}"  # the bytes of a number and its line
 
 
 def place_of(photo: Path, out: Path) -> str:

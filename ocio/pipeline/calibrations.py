@@ -17,8 +17,7 @@ from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles
 from ..report.calibration import Measured, calibration_document, calibration_provenance
-from .delivery import write_luts
-from .plan import OutputPlan, plan_files, staged_plan
+from .delivery import OutputPlan, plan_files, staged_plan, write_luts
 
 
 def plan_calibration(
@@ -73,8 +72,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)
     try:
-        samples = read_json(path)["response"]["brightness"]
-        return ResponseCurve.restored(samples)
+        return ResponseCurve.restored(read_json(path)["response"]["brightness"])
     except OSError as problem:
         raise PlateError("not_opened", path=path, reason=problem.strerror) from problem
     except (KeyError, OverflowError, TypeError, ValueError, CurveError) as problem:

@@ -22,9 +22,8 @@ from ..plates.frames import FrameSequence
 from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
 from .batch import Batch, Task
-from .delivery import deliver_estimate, estimated_light, with_light
+from .delivery import OutputPlan, deliver_estimate, estimated_light, with_light
 from .estimates import estimate_files, response_lut
-from .plan import OutputPlan
 from .records import PhotographRecord
 
 #: Most photographs of a folder that still gets a config: nobody chooses from a longer menu, and OpenColorIO's time to
@@ -60,24 +59,22 @@ class EstimateBatch(Batch):
 
     def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:
         """Write the config of each folder; the record of a photograph whose LUT is damaged becomes an error."""
+        damaged: dict[str, PhotographRecord] = {}
         with self.records.locked():  # two runs at once: the last that ends knows the records of both
-            damaged = self._write_configs([record.place for record in records])
+            for entries in self._folders([record.place for record in records]):
+                damaged |= self._write_config(entries)
         for record in damaged.values():
             self.records.append(record)  # so that the next run estimates the photograph again
         return [damaged.get(record.place, record) for record in records]
 
-    def _write_configs(self, order: Sequence[str]) -> dict[str, PhotographRecord]:
-        """Write the config of each folder, with all photographs whose LUT is there; return the damaged ones."""
-        damaged: dict[str, PhotographRecord] = {}
+    def _folders(self, order: Sequence[str]) -> list[list[PhotographRecord]]:
+        """Return the photographs of each folder that gets a config: all whose LUT is there."""
         every = self.records.read()
         folders: dict[str, list[PhotographRecord]] = {}
         for place in dict.fromkeys([*order, *sorted(every)]):  # whichever ended first
             if not every[place].error and (self.out / every[place].lut).exists():
                 folders.setdefault(every[place].folder, []).append(every[place])
-        for records in folders.values():
-            if len(records) <= MAX_COLOR_SPACES:
-                damaged |= self._write_config(records)
-        return damaged
+        return [records for records in folders.values() if len(records) <= MAX_COLOR_SPACES]
 
     def _write_config(self, records: Sequence[PhotographRecord]) -> dict[str, PhotographRecord]:
         """Write the config of one folder; return the photographs whose LUT is damaged."""

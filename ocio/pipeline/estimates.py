@@ -1,19 +1,18 @@
 """From photographs, frames or movies to the response that is estimated from them, and its LUT."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Self
 
 from crfnet_core.errors import check_kinds
 from crfnet_core.estimate.analysis import CutPhotograph, cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
-from crfnet_core.library import Camera, camera_estimate, find_camera, offered_cameras, with_camera
+from crfnet_core.library import camera_estimate, find_camera, offered_cameras, with_camera
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
@@ -45,7 +44,7 @@ class PhotographFacts:
     stride: int
 
     @classmethod
-    def from_photo(cls, photo: Photo, plate: PlateSource, *, has_preview: bool) -> PhotographFacts:
+    def from_photo(cls, photo: Photo, plate: PlateSource, *, has_preview: bool) -> Self:
         """Return the facts about a photograph of a plate."""
         (height, width), metadata = photo.shape[:2], photo.metadata
         stride, has_gain_map = max(1, -(-max(height, width) // PREVIEW_SIDE)), bool(metadata and metadata.has_gain_map)
@@ -63,20 +62,10 @@ class FileEstimate:
     """The response that photographs have in common, and the facts about them."""
 
     estimate: ResponseEstimate
-    sources: tuple[PlateSource, ...]
     photographs: tuple[PhotographFacts, ...]  # of all sources; of a sequence or movie the frames that were analyzed
     firsts: tuple[PhotographFacts, ...]  # the first of each source, which becomes its linear plate
-    offers: tuple[CameraAnswer, ...] = ()  # stored cameras of the first photograph's model, if none was asked for
-
-    @property
-    def paths(self) -> tuple[Path, ...]:
-        """The file of each source."""
-        return tuple(source.paths[0] for source in self.sources)
-
-    @property
-    def movies(self) -> tuple[str, ...]:
-        """The report's line of each movie."""
-        return tuple(str(movie) for source in self.sources if (movie := movie_of(source)))
+    offers: tuple[CameraAnswer, ...]  # stored cameras of the first photograph's model, if none was asked for
+    movies: tuple[str, ...]  # the report's line of each movie
 
 
 def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list[PlateSource]:
@@ -125,7 +114,7 @@ def estimate_files(
     """
     for source in sources:
         check_kinds(sources=(source, PlateSource))
-    camera = load_camera(options)  # first, so that a wrong name is refused at once
+    camera = find_camera(options.camera) if options.camera is not None else None  # first, so as to refuse a wrong name
     prior, network = Prior.load(options.prior), load_network(options.model, options.threads)
     analyzed = list(_cut_photographs(sources, options.analysis))
     cut, photographs, positions = zip(*analyzed, strict=True) if analyzed else ((), (), ())
@@ -133,10 +122,10 @@ def estimate_files(
     is_offering = options.analysis.use_metadata and camera is None
     return FileEstimate(
         estimate=with_camera(estimate, camera) if camera else estimate,
-        sources=tuple(sources),
         photographs=photographs,
         firsts=tuple(facts for facts, position in zip(photographs, positions, strict=True) if position == 0),
         offers=offered_cameras(estimate) if is_offering else (),
+        movies=tuple(str(movie) for movie in map(movie_of, sources) if movie),
     )
 
 
@@ -161,18 +150,6 @@ def load_network(model: Path | None, threads: int) -> ResponseNetwork:
     return ResponseNetwork.load(model, threads=threads)
 
 
-def check_network(options: EstimateOptions) -> None:
-    """Raise a CRFNetError if the prior or the network cannot be read."""
-    Prior.load(options.prior)
-    load_network(options.model, options.threads)
-
-
-def load_camera(options: EstimateOptions) -> Camera | None:
-    """Return the stored camera that the options name; None if they name none."""
-    return None if options.camera is None else find_camera(options.camera)
-
-
 def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
-    """Return the response of that camera, for photographs that nobody looks at; None without one."""
-    camera = load_camera(options)
-    return None if camera is None else camera_estimate(camera)
+    """Return the response of the stored camera that the options name, for photographs that nobody looks at, or None."""
+    return camera_estimate(find_camera(options.camera)) if options.camera is not None else None

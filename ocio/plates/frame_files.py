@@ -148,12 +148,11 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     samples = np.concatenate([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
     if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
         raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
-    if header.alpha_channel < 0:
-        return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
-    alpha = planes[header.alpha_channel]  # (H, W, 1)
-    if is_divided:
+    alpha = planes.get(header.alpha_channel)  # (H, W, 1)
+    if alpha is not None and is_divided:
         samples = np.divide(samples, alpha, out=np.zeros_like(samples), where=alpha != 0)
-    return EncodedFrame(samples, 1, alpha[..., 0], header, header_color_tags(header, "OpenEXR"))
+    coverage = None if alpha is None else alpha[..., 0]
+    return EncodedFrame(samples, 1, coverage, header, header_color_tags(header, "OpenEXR"))
 
 
 def _color_channels(header: Any) -> list[int]:

@@ -18,10 +18,9 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
     from fileseq.frameset import FrameSet
 
-    numbers: Collection[Any] = ()
+    is_plain = frames.isascii() and all(frames.split(",")) and not re.search(r"\d\s+\d", frames)  # 1 2 would be 12
     try:
-        if frames.isascii() and all(frames.split(",")) and not re.search(r"\d\s+\d", frames):  # 1 2 would be 12
-            numbers = FrameSet(frames)
+        numbers: Collection[Any] = FrameSet(frames) if is_plain else ()
     except MaxSizeException:
         numbers = range(MAX_FRAMES + 1)
     except ParseException:

@@ -3,11 +3,10 @@
 Fileseq refuses `a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in `v1####.png` for a frame.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 from ..errors import PlateError
 
@@ -25,7 +24,7 @@ class FramePattern:
     suffix: str
 
     @classmethod
-    def parse(cls, pattern: str | Path) -> FramePattern | None:
+    def parse(cls, pattern: str | Path) -> Self | None:
         """Return the pattern, or None for a name without a placeholder; those in the folder's name do not count.
 
         `%04d`, `$F4`, `####` and, as in oiiotool and RV, `#` pad to four digits, `@@@` to three; `%d` and `$F` do not.

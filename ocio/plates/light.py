@@ -1,12 +1,10 @@
 """The meaning of the numbers in a linear plate, and a check that finished frames have the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import OpenImageIO as oiio
@@ -43,7 +41,7 @@ class PlateLight:
     tagged: str = ""  # the published encoding that a tag of the plate names, and the tag
 
     @classmethod
-    def from_tags(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
+    def from_tags(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> Self:
         """Return the light of a plate with these tags; raises as `anchored_exposure` and `linear_space`."""
         plate = plate_primaries(tags, options.primaries)
         stops = anchored_exposure(lut, gray=options.gray, stops=options.exposure)

@@ -1,11 +1,12 @@
 """Linearize plates: encoded files and frame sequences to scene-linear OpenEXR."""
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -201,21 +202,17 @@ def finished(
     """Yield named jobs as they finish, in threads; they are taken in this thread, while fewer than `waiting` wait."""
     pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
     running: dict[Future[None], Name] = {}
+    remaining = iter(jobs)
     try:
-        for name, job in jobs:
-            running[pool.submit(job)] = name
-            if len(running) >= workers + waiting:
-                yield from _ended(running)
-        while running:
-            yield from _ended(running)
+        while True:
+            for name, job in islice(remaining, workers + waiting - len(running)):
+                running[pool.submit(job)] = name
+            if not running:
+                return
+            done = wait(running, return_when=FIRST_COMPLETED).done
+            yield from [(running.pop(future), future) for future in [*running] if future in done]
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-def _ended(running: dict[Future[None], Name]) -> Iterator[tuple[Name, Future[None]]]:
-    """Wait until a job ends; yield it, and others that have ended, in the order of their beginning."""
-    done = wait(running, return_when=FIRST_COMPLETED).done
-    yield from [(running.pop(future), future) for future in [*running] if future in done]
 
 
 def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:

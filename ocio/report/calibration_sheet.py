@@ -14,11 +14,8 @@ from crfnet_core.types import Float64Array
 from . import sheet
 from .calibration import Measured, calibration_lines, white_words
 
-#: Darkest irradiance that is drawn, log2; white is 0.
-DARKEST = -12
-
-#: Largest residual that is drawn, in 8-bit codes.
-LARGEST_RESIDUAL = 8
+#: Darkest irradiance that is drawn, log2 (white is 0), and largest residual, in 8-bit codes.
+DARKEST, LARGEST_RESIDUAL = -12, 8
 
 #: Colors of the channels; causes of residuals -> the column of `points`; the gap between their axes.
 CHANNELS = np.array([[0.76, 0.18, 0.16, 0.6], [0.12, 0.52, 0.24, 0.6], [0.1, 0.4, 0.76, 0.6]])

@@ -35,7 +35,6 @@ class Phrases:
     has_e_est: bool = True  # whether errors are also given as E_est, the figure of the literature
 
 
-#: The phrases of the command.
 COMMAND = Phrases()
 
 

@@ -17,7 +17,6 @@ from ..plates.linear import PlateReport
 from .documents import QUARTERS
 from .facts import COMMAND, Phrases, agreeing, basis, curve_error_words, expected_errors, shape_error_words
 
-#: The verdicts in words for people.
 VERDICTS = {
     Verdict.USABLE: "usable: look at the linear plate before you rely on it",
     Verdict.DO_NOT_TRUST: "not to be trusted",

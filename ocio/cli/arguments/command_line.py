@@ -5,7 +5,6 @@ import argparse
 from . import parts
 from .parts import Commands, Parser, given_path
 
-#: The help of --no-sheet.
 NO_SHEET = "do not draw the sheet, the picture of the result"
 
 ESTIMATE_EXAMPLES = """examples:
@@ -98,7 +97,6 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def _add_estimate(commands: Commands) -> None:
-    """Add `crfnet estimate`."""
     summary = "estimate the response of the camera that took a photograph"
     parser = parts.add_command(commands, "estimate", summary, ESTIMATE_EXAMPLES)
     photos = "photograph, movie, or sequence such as shot.%%04d.png"
@@ -113,7 +111,6 @@ def _add_estimate(commands: Commands) -> None:
 
 
 def _add_linearize(commands: Commands) -> None:
-    """Add `crfnet linearize`."""
     summary = "write plates, sequences or movies as linear EXR"
     parser = parts.add_command(commands, "linearize", summary, LINEARIZE_EXAMPLES)
     plates = "photograph, movie, folder with one sequence, or sequence such as shot.%%04d.png or shot.####.png"
@@ -129,7 +126,6 @@ def _add_linearize(commands: Commands) -> None:
 
 
 def _add_calibrate(commands: Commands) -> None:
-    """Add `crfnet calibrate`."""
     summary = "measure a camera's response from an exposure stack, or from raw files and their JPEGs"
     parser = parts.add_command(commands, "calibrate", summary, CALIBRATE_EXAMPLES)
     files = "frames of a stack; or raw files, their JPEGs, folders of both"
@@ -146,7 +142,6 @@ def _add_calibrate(commands: Commands) -> None:
 
 
 def _add_camera(commands: Commands) -> None:
-    """Add `crfnet camera` and its five actions."""
     summary = "store measured responses of cameras, to use them with --camera"
     parser = parts.add_command(commands, "camera", summary, CAMERA_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
@@ -166,7 +161,6 @@ def _add_camera(commands: Commands) -> None:
 
 
 def _add_config(commands: Commands) -> None:
-    """Add `crfnet config` and its two actions."""
     summary = "add the color spaces of plates to a copy of an OpenColorIO config"
     parser = parts.add_command(commands, "config", summary, CONFIG_EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
@@ -180,7 +174,6 @@ def _add_config(commands: Commands) -> None:
 
 
 def _add_info(commands: Commands) -> None:
-    """Add `crfnet info`."""
     parser = parts.add_command(commands, "info", "describe a LUT file", INFO_EXAMPLES)
     parts.add_value(parser, "lut", "FILE", "LUT that OpenColorIO reads", given_path)
     parts.add_json(parser)

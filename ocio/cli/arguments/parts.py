@@ -15,7 +15,6 @@ BAD_INPUT = 2
 #: Exit code with --strict if a response is not to be trusted; everything is written nevertheless.
 NOT_TRUSTED = 3
 
-#: The help of --overwrite.
 OVERWRITE = "replace files that are already there"
 
 
@@ -143,19 +142,15 @@ def positive(text: str) -> int:
 
 
 def exposure(text: str) -> Exposure:
-    """Return the exposure in `text`: white, gray, gray=BRIGHTNESS, in any case, or stops within `MAX_EXPOSURE`."""
+    """Return the exposure in `text`: white, gray, gray=BRIGHTNESS (above 0, at most 1), in any case, or stops."""
     anchor, _, brightness = text.lower().replace("grey", "gray").partition("=")
     if text.lower() == "white":
         return Exposure()
     if anchor == "gray":
-        return Exposure(gray=_brightness(brightness) if "=" in text else GRAY_BRIGHTNESS)
+        gray = float(brightness) if "=" in text else GRAY_BRIGHTNESS
+        if not 0 < gray <= 1:
+            raise argparse.ArgumentTypeError(f"a gray of {brightness} is not between 0 and 1; divide a code by 255")
+        return Exposure(gray=gray)
     if not abs(value := float(text)) <= MAX_EXPOSURE:
         raise argparse.ArgumentTypeError(f"{text} is not between -{MAX_EXPOSURE} and {MAX_EXPOSURE} stops")
     return Exposure(stops=value)
-
-
-def _brightness(text: str) -> float:
-    """Return the encoded brightness in `text`, which must be above 0 and at most 1."""
-    if not 0 < (value := float(text)) <= 1:
-        raise argparse.ArgumentTypeError(f"a gray of {text} is not between 0 and 1; divide a code by 255")
-    return value

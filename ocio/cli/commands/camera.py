@@ -28,7 +28,6 @@ def _add(arguments: argparse.Namespace) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> None:
-    """List the user's cameras, and the ones that come with this project."""
     user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
     cameras, others = (list(map(camera_summary, library.cameras())) for library in (user, shipped))
     document = {"folder": str(user.folder), "cameras": cameras, "shipped": others, "problems": user.problems()}
@@ -43,12 +42,10 @@ def _list(arguments: argparse.Namespace) -> None:
 
 
 def _show(arguments: argparse.Namespace) -> None:
-    """Show how good the response of a camera is."""
     _print_camera(find_camera(arguments.name), as_json=arguments.json)
 
 
 def _remove(arguments: argparse.Namespace) -> None:
-    """Remove a camera of the user's."""
     library = CameraLibrary.of_user()
     if not library.file_of(arguments.name) and CameraLibrary.shipped().file_of(arguments.name):
         raise CommandError("packaged_camera", name=arguments.name)

@@ -12,12 +12,11 @@ from .printing import lost_lines, print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Do what `crfnet config add` or `list` asks for."""
+    """Run `crfnet config add` or `list`."""
     {"add": _add, "list": _list}[arguments.action](arguments)
 
 
 def _add(arguments: argparse.Namespace) -> None:
-    """Write a config with plates added."""
     paths = dict.fromkeys(path.resolve() for path in arguments.looks)
     looks = [look for path in paths for look in read_looks(path)]
     base = find_config(arguments.base)
@@ -34,7 +33,6 @@ def _add(arguments: argparse.Namespace) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> None:
-    """List the plates of a config."""
     source = find_config(arguments.config)
     plates = plates_in_config(source.config)
     document = {"config": source.name, "plates": [asdict(plate) for plate in plates]}

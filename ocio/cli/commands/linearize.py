@@ -1,7 +1,6 @@
 """`crfnet linearize`: plates as linear EXR, through a LUT or an estimated response."""
 
 import argparse
-from pathlib import Path
 
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.photograph.image_io.file_kinds import file_kind
@@ -44,7 +43,9 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
     sequence = find_source(arguments.plates[0], arguments.frames)
     if movie := movie_of(sequence):
         check_progressive(movie)
-    _check_single(arguments.out, sequence)
+    if not sequence.numbers and FramePattern.parse(arguments.out) and not FramePattern.parse(sequence.paths[0]):
+        file_kind(sequence.paths[0])  # refuses what is empty or of no known format, for this reason
+        raise CommandError("pattern_for_file", path=arguments.out, plate=sequence.paths[0])
     targets = linear_targets(arguments.out, sequence)
     folder = arguments.out.parent
     check_folder(folder)
@@ -56,14 +57,6 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
     lines = [*read.values(), *lines, *words.light_lines(document), *words.plate_lines(done)]
     print_result(document | read, lines, as_json=arguments.json)
     return [estimate.verdict] if estimate else []
-
-
-def _check_single(out: Path, sequence: PlateSource) -> None:
-    """Refuse the pattern of a sequence as the name of a single file, unless the plate is named after one, too."""
-    plate = sequence.paths[0]
-    if not sequence.numbers and FramePattern.parse(out) and FramePattern.parse(plate) is None:
-        file_kind(plate)  # refuses what is empty or of no known format, for this reason
-        raise CommandError("pattern_for_file", path=out, plate=plate)
 
 
 def _response(

@@ -1,7 +1,5 @@
 """The output of the subcommands: lines, a JSON document, a progress bar."""
 
-from __future__ import annotations
-
 import atexit
 import errno
 import os
