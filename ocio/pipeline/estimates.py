@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -28,7 +28,7 @@ from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
 from ..report.facts import PhotoEntry, provenance
-from .photographs import is_folder, unique
+from .photographs import is_folder, named_paths, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
 PREVIEW_SIDE = 960
@@ -86,7 +86,7 @@ def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list
     two, as in `parse_frames`. Raise PlateError if there are none, or a name leads to a folder or to nothing.
     """
     patterns: dict[Path, str] = {}
-    for name in names:
+    for name in named_paths(names):
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
         if is_single and is_folder(name):  # before the output is looked at
             raise PlateError("folder_for_photograph", path=name, pattern=name / "shot.%04d.png")
@@ -123,6 +123,8 @@ def estimate_files(
         If the network, the prior or the camera cannot be loaded, a photograph cannot be read or is smaller than a
         window, or a file has a published curve.
     """
+    sources = tuple(sources) if isinstance(sources, Iterable) else (sources,)
+    check_kinds(options=(options, EstimateOptions))
     for source in sources:
         check_kinds(sources=(source, PlateSource))
     camera = load_camera(options)  # first, so that a wrong name is refused at once
@@ -133,7 +135,7 @@ def estimate_files(
     is_offering = options.analysis.use_metadata and camera is None
     return FileEstimate(
         estimate=with_camera(estimate, camera) if camera else estimate,
-        sources=tuple(sources),
+        sources=sources,
         photographs=photographs,
         firsts=tuple(facts for facts, position in zip(photographs, positions, strict=True) if position == 0),
         offers=offered_cameras(estimate) if is_offering else (),

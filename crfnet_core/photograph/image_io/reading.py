@@ -262,7 +262,7 @@ def _content(source: Any, path: Path) -> Any:
     """Return all that an open file holds."""
     try:
         return source.read()
-    except (OSError, ValueError) as problem:  # closed files and texts are a ValueError
+    except (OSError, TypeError, ValueError) as problem:  # closed files are a ValueError, archives a TypeError
         raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
 
 
