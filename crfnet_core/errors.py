@@ -109,14 +109,14 @@ def check_kinds(**arguments: tuple[object, Any]) -> None:
             needed = getattr(kind, "__name__", kind)
             raise CRFNetError("argument_kind", name=name, found=type(value).__name__, needed=needed)
         is_path = isinstance(Path(), kind) and isinstance(value, str | Path)
-        if is_path and not _is_file_name(str(value)):
+        if is_path and not is_file_name(value):
             raise CRFNetError("argument_kind", name=name, found="text that no file's name can be", needed="file's name")
 
 
-def _is_file_name(text: str) -> bool:
-    """Return whether the system takes a text as the name of a file."""
+def is_file_name(path: str | os.PathLike[str]) -> bool:
+    """Return whether the system takes a path as the name of a file."""
     try:
-        return b"\0" not in os.fsencode(text)
+        return b"\0" not in os.fsencode(path)
     except UnicodeEncodeError:  # half of a surrogate pair
         return False
 

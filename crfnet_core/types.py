@@ -1,4 +1,4 @@
-"""Names for arrays and callbacks; dataclasses of arrays: equal or not; values made plain, and checked; the cores."""
+"""Names for arrays and callbacks; dataclasses that compare arrays or check fields; values made plain; the cores."""
 
 import dataclasses
 import math
@@ -13,6 +13,8 @@ from typing import Annotated, Any, ClassVar, Protocol, Union, get_args, get_orig
 
 import numpy as np
 from numpy.typing import NDArray
+
+from crfnet_core.errors import CRFNetError, is_file_name
 
 Float32Array = NDArray[np.float32]  # pixels, statistics, and what the network computes with
 Float64Array = NDArray[np.float64]  # responses, weights, and what is measured
@@ -65,6 +67,25 @@ class EqualByFields:
         return all(_same(getattr(self, each.name), getattr(other, each.name)) for each in dataclasses.fields(self))
 
 
+class CheckedFields:
+    """Base of dataclasses of options: raises CRFNetError for one of another type, or out of the bounds in its type."""
+
+    __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
+
+    def __post_init__(self) -> None:
+        hints = get_type_hints(type(self), include_extras=True)
+        for each in dataclasses.fields(self):
+            object.__setattr__(self, each.name, checked_option(each.name, getattr(self, each.name), hints[each.name]))
+
+
+def checked_option(name: str, value: Any, kind: Any) -> Any:
+    """Return an option as a value of the type in an annotation, as `typed_value`; raise CRFNetError."""
+    try:
+        return typed_value(value, kind)
+    except (TypeError, ValueError) as problem:
+        raise CRFNetError("bad_option", name=name, problem=problem) from None
+
+
 def plain_values(value: Any) -> Any:
     """Return a value as plain dicts, lists, texts and numbers; NaN, which JSON does not have, as None."""
     if isinstance(value, Mapping):
@@ -83,15 +104,16 @@ def typed_value(value: Any, kind: Any) -> Any:
 
     Of a dataclass, entries that are not fields are left out. Numbers are finite and not negative, unless an annotation
     such as `Annotated[int, (1, 9)]` states other bounds; `Annotated[str, ("a", "b")]` states all texts. A text may
-    stand for a path.
+    stand for a path, and a scalar of NumPy for its value; a dict is not taken for `CheckedFields`.
     """
     origin, arguments = get_origin(kind), get_args(kind)
+    value = value.item() if isinstance(value, np.generic) else value
     if origin in (UnionType, Union):
         return typed_value(value, type(value) if type(value) in arguments else arguments[0])
     if origin is tuple:
-        return tuple(typed_value(each, arguments[0]) for each in typed_value(value, list))
+        return tuple(typed_value(each, arguments[0]) for each in typed_value(value, list | tuple))
     if origin is Annotated and arguments[0] is str:
-        if value not in arguments[1]:
+        if not isinstance(value, str) or value not in arguments[1]:
             raise ValueError(f"{value!a:.40} is none of {', '.join(arguments[1])}")
         return value
     if origin is Annotated:
@@ -99,13 +121,15 @@ def typed_value(value: Any, kind: Any) -> Any:
     kind = origin or kind
     if kind in (int, float):
         return number_of(value, kind, least=0)
-    if kind is Path and isinstance(value, str):
+    if kind is Path and isinstance(value, str | os.PathLike):
+        if not is_file_name(value):
+            raise ValueError(f"{value!a:.40} cannot be the name of a file")
         return Path(value)
-    if hasattr(kind, "__dataclass_fields__") and not isinstance(value, kind):
+    if hasattr(kind, "__dataclass_fields__") and isinstance(value, dict) and not issubclass(kind, CheckedFields):
         hints = get_type_hints(kind, include_extras=True)
         return kind(**{name: typed_value(value[name], hint) for name, hint in hints.items() if name in value})
     if issubclass(kind, Enum):
-        return kind(value)
+        return kind(typed_value(value, str))
     if not isinstance(value, kind):
         raise ValueError(f"{value!a:.40} is not a {kind.__name__}")
     return value

@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-from crfnet_core.estimate.options import AnalysisOptions, CheckedFields
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.photograph.metadata import Device
+from crfnet_core.types import CheckedFields
 
 from .defaults import DEPTHS, MOST_STOPS, OUTPUT_SPACES, PRIMARIES, PRIORS
 

@@ -1,31 +1,11 @@
-"""Options with bounds; and the choices of an analysis, apart from the network and the prior."""
+"""The choices of an analysis, apart from the network and the prior."""
 
-from dataclasses import Field, dataclass, fields
-from typing import Annotated, Any, ClassVar, get_type_hints
+from dataclasses import dataclass
+from typing import Annotated
 
-from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.metadata import Device
 from crfnet_core.statistics.windows import FULL_COVERAGE, POSITIONS_TRIED, WINDOWS_PER_PHOTOGRAPH
-from crfnet_core.types import typed_value
-
-
-class CheckedFields:
-    """Base of dataclasses of options: raises CRFNetError for one of another type, or out of the bounds in its type."""
-
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-    def __post_init__(self) -> None:
-        hints = get_type_hints(type(self), include_extras=True)
-        for each in fields(self):
-            object.__setattr__(self, each.name, checked_option(each.name, getattr(self, each.name), hints[each.name]))
-
-
-def checked_option(name: str, value: Any, kind: Any) -> Any:
-    """Return an option as a value of the type in an annotation, as `typed_value`; raise CRFNetError."""
-    try:
-        return typed_value(value, kind)
-    except (TypeError, ValueError) as problem:
-        raise CRFNetError("bad_option", name=name, problem=problem) from None
+from crfnet_core.types import CheckedFields
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -174,7 +174,7 @@ class ResponseEstimate(EqualByFields):
             )
         except KeyError as problem:
             raise EstimateError("estimate_lacks", entry=problem) from None
-        except (AttributeError, OverflowError, TypeError, ValueError) as problem:
+        except (AttributeError, IndexError, OverflowError, TypeError, ValueError) as problem:
             raise EstimateError("damaged_estimate", problem=problem) from None
 
 

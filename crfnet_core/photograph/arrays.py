@@ -63,16 +63,15 @@ def has_equal_channels(pixels: NDArray[Any]) -> bool:
 def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> ColorOrder | None:
     """Return the stated order, or the order of a Pillow image; refuse an image of another mode."""
     orders = get_args(ColorOrder)
-    if color_order is not None and color_order not in orders:
+    if color_order is not None and not (isinstance(color_order, str) and color_order in orders):
         raise PhotoError("array_unknown_order", path=name, order=repr(color_order), orders=", ".join(orders))
-    mode = None if isinstance(array, np.ndarray) else getattr(array, "mode", None)  # np.memmap has a mode, too
-    if not isinstance(mode, str):
+    if not isinstance(array, Image.Image):
         return color_order
-    order = PILLOW_MODES.get(mode)
+    order = PILLOW_MODES.get(array.mode)
     if order is None:
-        raise PhotoError("pillow_mode", path=name, mode=mode)
+        raise PhotoError("pillow_mode", path=name, mode=array.mode)
     if color_order not in (None, order):
-        raise PhotoError("pillow_order_stated", path=name, mode=mode, order=color_order)
+        raise PhotoError("pillow_order_stated", path=name, mode=array.mode, order=color_order)
     return order
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from crfnet_core.errors import check_kinds
 from crfnet_core.files import atomic_write_text
+from crfnet_core.types import checked_option
 
 from ..errors import LutError
 from .opencolorio import read_lut
@@ -76,6 +77,7 @@ def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None
         If no format has the suffix, the file exists and may not be replaced, or it cannot be written.
     """
     check_kinds(path=(path, str | Path), lut=(lut, AnyLut))
+    overwrite = checked_option("overwrite", overwrite, bool)
     path = Path(path)
     if path.suffix.lower() not in WRITERS:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(WRITERS))

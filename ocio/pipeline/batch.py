@@ -12,10 +12,10 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
-from crfnet_core.estimate.options import CheckedFields
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes, escaped_name
 from crfnet_core.posterior import Prior
+from crfnet_core.types import CheckedFields
 
 from ..defaults import CONFIG_NAME
 from ..errors import PlateError, error_of_file

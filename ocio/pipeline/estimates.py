@@ -1,7 +1,7 @@
 """From photographs, frames or movies to the response that is estimated from them, and its LUT."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -27,7 +27,7 @@ from ..options import EstimateOptions
 from ..plates.frame_pattern import FramePattern
 from ..plates.frames import find_frames, sample_frames
 from ..report.facts import PhotoEntry, provenance
-from .photographs import is_folder, unique
+from .photographs import is_folder, named_paths, unique
 
 #: Longer side in pixels of the photograph as the sheet shows it.
 PREVIEW_SIDE = 960
@@ -75,7 +75,7 @@ def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list
     two, as in `parse_frames`. Raise PlateError if there are none, or a name leads to a folder or to nothing.
     """
     patterns: dict[Path, str] = {}
-    for name in names:
+    for name in named_paths(names):
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
         if is_single and is_folder(name):  # before the output is looked at
             raise PlateError("folder_for_photograph", path=name, pattern=name / "shot.%04d.png")
@@ -112,6 +112,8 @@ def estimate_files(
         If the network, the prior or the camera cannot be loaded, a photograph cannot be read or is smaller than a
         window, or a file has a published curve.
     """
+    sources = tuple(sources) if isinstance(sources, Iterable) else (sources,)
+    check_kinds(options=(options, EstimateOptions))
     for source in sources:
         check_kinds(sources=(source, PlateSource))
     camera = find_camera(options.camera) if options.camera is not None else None  # first, so as to refuse a wrong name

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from crfnet_core.files import file_sha256, read_json
 from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
+from crfnet_core.types import checked_option
 
 from ..errors import PlateError
 from ..messages import NOT_TEXT
@@ -24,7 +25,7 @@ def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
     record. Raise PlateError if a folder holds no photograph or cannot be read.
     """
     photographs: dict[Path, Path] = {}
-    for name in map(Path, [names] if isinstance(names, str | Path) else names):
+    for name in named_paths(names):
         if not is_folder(name):
             photographs[name] = Path()
             continue
@@ -33,6 +34,12 @@ def find_photographs(names: Sequence[Path], out: Path) -> dict[Path, Path]:
             raise PlateError("empty_folder", path=name, suffixes=", ".join(PHOTOGRAPH_SUFFIXES))
         photographs |= {path: path.parent.relative_to(name) for path in paths}
     return {photo: photographs[photo] for photo in unique(photographs)}
+
+
+def named_paths(names: Sequence[Path] | Path) -> tuple[Path, ...]:
+    """Return names as paths, also one by itself; raise CRFNetError for other kinds."""
+    several = [names] if isinstance(names, str | os.PathLike) else names
+    return tuple(checked_option("names", several, tuple[Path, ...]))
 
 
 def unique(photographs: Iterable[Path]) -> list[Path]:

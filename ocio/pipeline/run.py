@@ -1,15 +1,14 @@
 """Do the tasks of a batch: in processes, recorded as they end, not stopped by a bad file."""
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, as_completed
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from crfnet_core.errors import CRFNetError, check_kinds
-from crfnet_core.estimate.options import checked_option
-from crfnet_core.types import Progress, cores, show_progress
+from crfnet_core.types import Progress, checked_option, cores, show_progress
 
 from ..errors import PlateError
 from ..output_files import output_folder
@@ -58,9 +57,10 @@ def run_batch(
         If the folder holds results of other options or cannot be used, the response, the prior or the network cannot be
         read, a process dies, or no scheduler answers; not if a photograph is bad.
     """
-    check_kinds(photographs=(photographs, Mapping))
+    check_kinds(batch=(batch, Batch), photographs=(photographs, Mapping), progress=(progress, Callable | None))
     workers = checked_option("workers", workers, Annotated[int, (1, MOST_WORKERS)] | None)
-    photographs = {Path(photo): _place(place) for photo, place in photographs.items()}
+    scheduler = checked_option("scheduler", scheduler, str | None)
+    photographs = {checked_option("photographs", photo, Path): _place(place) for photo, place in photographs.items()}
     batch.check()
     records = batch.records.read()
     tasks = plan_tasks(batch, photographs, records)

@@ -90,6 +90,7 @@ DAMAGES: dict[str, tuple[object, ...]] = {
     "metadata": ({}, [{}]),
     **dict.fromkeys(("metadata.0.device", "metadata.0.is_scaled", "metadata.0.words"), ("sundial", 1, [1])),
     "warnings": ("x", {}, [1]),
+    "response": (None, np.ones(3)),
     "weights": (None, 1, [], [0.0] * 10, [[0.0] * 11], *([each] * 11 for each in (10**400, math.nan, "1", True))),
     "windows": (3, {}, [3]),
     **dict.fromkeys(("windows.0.photo", "windows.0.x", "windows.0.weights"), (-1, 1.5, "1", None)),
@@ -127,8 +128,10 @@ def test_options_of_another_type_or_out_of_range_are_refused(option, value):
 
 
 def test_options_are_kept_as_values_of_their_types():
-    options = AnalysisOptions(windows=np.int64(3), device="phone")
+    options = AnalysisOptions(windows=np.int64(3), device="phone", use_metadata=np.False_)
     assert (options.windows, type(options.windows), options.device, type(options.device)) == (3, int, "phone", Device)
+    assert options.use_metadata is False
+    assert FileMetadata(width=np.int64(3), history=["a"]) == FileMetadata(width=3, history=("a",))
 
 
 @pytest.mark.parametrize(

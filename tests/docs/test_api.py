@@ -3,10 +3,17 @@ import importlib
 import inspect
 import re
 import shutil
+from functools import partial
 
+import numpy as np
 import pytest
 
 import crfnet
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D
+from crfnet.options import EstimateOptions, PlateOptions
+from crfnet.pipeline import LinearBatch, estimate_files, photograph_sources, run_batch
+from crfnet_core.photograph.metadata import FileMetadata
 
 #: The head of a table of names that one module has.
 HEAD = re.compile(r"^\| `((?:crfnet_core|crfnet)[\w.]*)` \|")
@@ -78,3 +85,34 @@ def test_its_examples_run(page, plate, tmp_path, monkeypatch):
     assert (names["from_array"].pixels == names["same"].pixels).all()
     assert abs(names["curve"].forward(names["linear"]) - names["photo"].pixels).max() < 1e-6
     assert (tmp_path / "plate01.spi1d").is_file()
+
+
+BATCH = partial(LinearBatch, out="out", options=EstimateOptions(), plates=PlateOptions(), lut=None)
+
+
+@pytest.mark.parametrize(
+    ("name", "call", "values"),
+    [
+        ("analysis", EstimateOptions, ("fast", ["fast"], {"window": 1}, np.arange(3))),
+        ("plates", BATCH, ("half", {"exposur": 1})),
+        ("out", BATCH, ("a\0b",)),
+        ("history", FileMetadata, ("Adobe", None, (1,))),
+        ("width", FileMetadata, (True, -1)),
+        ("iso", FileMetadata, ("100", 1.5)),
+        ("overwrite", partial(write_lut, "a.cube", Lut1D([0, 1])), ("no", 1, np.ones(2))),
+        ("names", photograph_sources, (5, {"plate.jpg": ""})),
+        ("sources", partial(estimate_files, options=EstimateOptions()), (None, "plate.jpg", ["plate.jpg"])),
+        ("options", partial(estimate_files, ()), (None, {})),
+        ("batch", partial(run_batch, photographs={}), (None,)),
+        ("photographs", partial(run_batch, BATCH()), ([], {None: ""}, {"a\0b": ""}, {"a": "\ud800"})),
+        ("scheduler", partial(run_batch, BATCH(), {}), (5, ["tcp://a:1"])),
+        ("progress", partial(run_batch, BATCH(), {}), (5,)),
+    ],
+)
+def test_an_argument_of_another_kind_is_a_crfnet_error_that_names_it(name, call, values, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for value in values:
+        with pytest.raises(crfnet.CRFNetError) as caught:
+            call(**{name: value})
+        assert caught.value.facts["name"] == name
+    assert not list(tmp_path.iterdir())

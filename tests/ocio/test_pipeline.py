@@ -53,16 +53,12 @@ class TestEstimates:
         ):
             with refused(CRFNetError, "bad_option", name=next(iter(facts))):
                 pipeline.run_batch(batch, **{"photographs": {plate: ""}, **facts})
-        with refused(CRFNetError, "argument_kind"):
-            pipeline.run_batch(batch, [plate])
-        with refused(CRFNetError, "argument_kind"):
-            pipeline.estimate_files([plate], options)
         assert not (tmp_path / "out").exists()
         found = pipeline.find_photographs(str(plate), batch.out)
         assert [record.error for record in pipeline.run_batch(batch, found, workers=1)] == [""]
 
     def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
-        found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
+        found = pipeline.estimate_files(iter([FrameSequence((plate,))] * 2), options)
         assert [str(facts.entry) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
         assert (found.photographs[0].preview.shape, found.photographs[0].stride) == ((378, 672, 3), 1)
         assert found.photographs[1].preview.size == 0

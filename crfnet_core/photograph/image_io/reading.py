@@ -75,7 +75,7 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     if hasattr(source, "read") and not isinstance(source, io.TextIOBase):
         try:
             content = source.read()
-        except (OSError, ValueError) as problem:  # closed files and texts are a ValueError
+        except (OSError, TypeError, ValueError) as problem:  # closed files are a ValueError, archives a TypeError
             raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
     if not isinstance(content, bytes | bytearray | memoryview):
         raise PhotoError("photograph_source", kind=type(source).__name__)

@@ -1,11 +1,12 @@
 """The metadata of an image file, from its header."""
 
 from dataclasses import dataclass, field, replace
-from typing import Any, get_type_hints
+from typing import Any
 
-from crfnet_core.errors import check_kinds, one_line
+from crfnet_core.errors import one_line
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
+from crfnet_core.types import CheckedFields
 
 Table = tuple[int, ...]  # a quantization table: 64 divisors, row by row
 
@@ -17,7 +18,7 @@ RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
 
 @dataclass(frozen=True)
-class FileMetadata:
+class FileMetadata(CheckedFields):
     """The metadata of an image file; a field is empty or None where the file does not state it. Texts are printable."""
 
     width: int = 0  # of the upright picture, in pixels
@@ -40,10 +41,6 @@ class FileMetadata:
     color: ColorTags = field(default_factory=ColorTags)  # the tags of its primaries and of its encoding
     is_turned: bool = False  # whether the reader has turned the picture upright
     is_unread: bool = False  # whether EXIF or XMP is compressed, so that the camera is in the file and not here
-
-    def __post_init__(self) -> None:
-        kinds = {name: kind for name, kind in get_type_hints(type(self)).items() if isinstance(kind, type)}
-        check_kinds(**{name: (getattr(self, name), kind) for name, kind in kinds.items()})
 
     @property
     def has_camera(self) -> bool:
