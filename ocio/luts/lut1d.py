@@ -185,7 +185,8 @@ def inverse_response_lut(
     toe = min(float(curve.inverse(code)) / code, MAX_END_SLOPE)
     shoulder = min((1 - float(curve.inverse(1 - code))) / code, MAX_END_SLOPE)
     brightness = np.linspace(low, high, length)
-    irradiance = curve.inverse(brightness) + toe * np.minimum(brightness, 0) + shoulder * np.maximum(brightness - 1, 0)
+    inner = np.clip(brightness, 0, 1)
+    irradiance = curve.inverse(inner) + toe * np.minimum(brightness, 0) + shoulder * np.maximum(brightness - 1, 0)
     return Lut1D(strictly_increasing(irradiance), (low, high), clean_comments(comments))
 
 

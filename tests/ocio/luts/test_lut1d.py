@@ -164,6 +164,12 @@ def test_code_values_are_refused(true_response, step):
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
 
 
+def test_a_lut_may_reach_beyond_all_brightness(true_response):
+    near, far = (inverse_response_lut(true_response, length=5, domain=(0, end)) for end in (1, 4))
+    assert (far.values[1], far.values[0]) == (near.values[-1], near.values[0])
+    np.testing.assert_allclose(np.diff(far.values[1:]), far.values[2] - far.values[1], rtol=1e-6)
+
+
 @pytest.mark.parametrize("codes", [np.linspace(0, 255, 9, dtype=np.float32), [np.nan, 3, 4, 0.5, 9]])
 def test_floating_point_codes_are_refused_and_light_has_no_bound(true_response, codes):
     lut = inverse_response_lut(true_response, domain=(-0.125, 1.125))
