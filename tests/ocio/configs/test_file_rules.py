@@ -5,13 +5,15 @@ import re
 import pytest
 
 from crfnet.configs.file_rules import (
-    add_file_rule,
+    FileClaim,
+    add_file_rules,
     is_counter_name,
     linear_patterns,
     plate_pattern,
     plate_rules,
     rule_regex,
 )
+from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
 from tests.helpers.configs import loaded, rule_names
@@ -21,7 +23,7 @@ from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
 def matched_space(pattern, path):
     """The color space that OpenColorIO's own rules give a file."""
     config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", [pattern])
+    add_file_rules(config, [FileClaim("plate", "ACEScct", (pattern,))])
     return config.getColorSpaceFromFilepath(path)[0]
 
 
@@ -50,7 +52,7 @@ def test_a_pattern_holds_for_full_names(pattern, matching, others):
 
 def test_several_patterns_are_one_rule():
     config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", ["a.jpg", "b.#.png"])
+    add_file_rules(config, [FileClaim("plate", "ACEScct", ("a.jpg", "b.#.png"))])
     result = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
     assert result == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
     assert list(plate_rules(config, "plate").values()) == ["ACEScct"]
@@ -91,11 +93,13 @@ def test_a_frame_stands_for_all_frames(name, pattern):
 def test_the_linear_files_of_a_plate_are_known_by_name_and_as_frames():
     names = ["shot.0001_linear.exr", "shot.0002_linear.exr", "other_linear.exr"]
     assert linear_patterns("shot.0001", names) == ("shot.#_linear.exr", "other_linear.exr", "shot.#.exr")
+    assert linear_patterns("frame_0001", plates="frame_#") == ()  # without a suffix
 
 
 def test_the_linear_files_of_thousands_of_photographs_make_a_rule_that_opencolorio_takes():
     config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)]))
+    patterns = linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)])
+    add_file_rules(config, [FileClaim("plate", "ACEScct", patterns)])
     assert config.getColorSpaceFromFilepath("/x/4999_linear.exr")[0] == "ACEScct"
 
 
@@ -112,8 +116,8 @@ def test_linear_frames_have_a_rule_where_the_base_knows_linear_files_by_their_na
     base.setFileRules(rules)
     (tmp_path / "base.ocio").write_text(base.serialize())
     done = add(tmp_path / "base.ocio", tmp_path / "new", write_look(tmp_path / "look", ["bg.0001.jpg"]))
-    names = ("bg.0002.exr", "bg.0002_linear.exr", "other.0002.exr")
-    assert [space_of(loaded(done.path), name) for name in names] == [LINEAR, LINEAR, "ACES2065-1"]
+    names = ("bg.0002.exr", "bg.0002_linear.exr", "BG.0002_LINEAR.EXR", "other.0002.exr")
+    assert [space_of(loaded(done.path), name) for name in names] == [LINEAR] * 3 + ["ACES2065-1"]
 
 
 def test_linear_frames_of_a_name_that_cameras_repeat_are_named(tmp_path):
@@ -126,8 +130,10 @@ def test_a_sequence_and_another_shots_frame_of_its_names_get_no_rule(tmp_path, o
     names = {"a": "skyline_001.png", "b": "skyline_001.png", "c": "skyline_002.png"}
     sequences = {"a": "skyline_#.png"}
     looks = [write_look(tmp_path / each, [names[each]], sequence=sequences.get(each, "")) for each in order]
-    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
-    assert {space_of(result, f"skyline_{number}.png") for number in ("001", "002", "3")} == {"sRGB - Display"}
+    done = add(STUDIO, tmp_path / "show", *looks)
+    spaces = {space_of(loaded(done.path), f"skyline_{number}.png") for number in ("001", "002", "3")}
+    assert spaces == {"sRGB - Display"}
+    assert set(done.without_rule) == {"skyline_#.png", "skyline_001.png", "skyline_002.png"}
 
 
 def test_a_rule_of_an_earlier_crfnet_is_of_the_same_files(tmp_path):
@@ -147,11 +153,64 @@ def test_files_of_several_plates_follow_the_rules_of_the_base(tmp_path):
     assert [space_of(result, f"/{shot}/plate01.jpg") for shot in ("sh010", "sh020")] == ["ACEScct", "sRGB"]
 
 
-def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path):
-    look = write_look(tmp_path / "a", interop_id="lin_ap1_scene")
-    done = add(STUDIO, tmp_path / "show", look, write_look(tmp_path / "b"))
-    assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
-    assert "plate01_linear.exr" in done.without_rule
+@pytest.mark.parametrize("interop_id", ["lin_ap1_scene", "lin_ap0_scene", "unknown"])
+@pytest.mark.parametrize("order", [1, -1])
+def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path, interop_id, order):
+    looks = [write_look(tmp_path / "a", interop_id=interop_id), write_look(tmp_path / "b")][::order]
+    together = add(STUDIO, tmp_path / "show", *looks)
+    one = add(STUDIO, tmp_path / "one", looks[0])
+    for done in (together, add(one.path, tmp_path / "two", looks[1])):
+        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
+        assert "plate01_linear.exr" in done.without_rule
+
+
+def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
+    one = add(STUDIO, tmp_path / "one", write_look(tmp_path / "a", ["sky.0001.png", "Größe.png", "c#.png"]))
+    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b", ["größe.png"]))
+    names = ("sky.0002.png", "C#.PNG", "größe.png", "GRÖSSE.PNG")
+    assert [space_of(loaded(two.path), name) for name in names] == ["CRF sky.0001"] * 2 + ["sRGB - Display"] * 2
+    assert two.without_rule == ("größe.png",)
+
+
+def test_a_number_may_go_on_in_a_sequences_frame(tmp_path):
+    looks = [write_look(tmp_path / "a", ["v2_20001.png"], sequence="v2_2#.png")]
+    looks += [
+        write_look(tmp_path / "b", ["v2_20001.png"]),
+        write_look(tmp_path / "c", ["v2_13.png"], sequence="v2_#3.png"),
+    ]
+    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
+    assert {space_of(result, name) for name in ("v2_20001.png", "v2_25.png", "v2_203.png")} == {"sRGB - Display"}
+
+
+def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate(tmp_path):
+    each = portable_config([PlateColorSpace("CRF IMG_0042", "a.spi1d", file_patterns=("IMG_0042.JPG",))])
+    (tmp_path / "each.ocio").write_text(each.serialize())
+    done = add(tmp_path / "each.ocio", tmp_path / "show", write_look(tmp_path / "b", ["IMG_0042.JPG"]))
+    assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB"
+
+
+def test_a_plate_may_be_called_as_the_linear_files_of_another(tmp_path):
+    looks = [write_look(tmp_path / "a", ["a.jpg"]), write_look(tmp_path / "b", ["a linear.jpg"])]
+    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
+    assert [space_of(result, name) for name in ("a.jpg", "a linear.jpg")] == ["CRF a", "CRF a linear"]
+
+
+def test_hundreds_of_photographs_have_rules_and_no_other_file(tmp_path):
+    names = [f"still {number}x.jpg" for number in range(250)]
+    result = loaded(add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", names)).path)
+    assert {space_of(result, name) for name in names} == {"CRF still 0x"}
+    linear = [space_of(result, name) for name in ("still 249x_linear.exr", "other_linear.exr")]
+    assert linear == [LINEAR, "ACES2065-1"]
+
+
+def test_a_rule_that_somebody_has_edited_stays(tmp_path):
+    one = add(STUDIO, tmp_path / "one", write_look(tmp_path / "a"))
+    rules = (config := loaded(one.path)).getFileRules()
+    rules.setRegex(0, r"(.*[/\\])?(plate01\.jpg|sh010.*\.jpg)")
+    config.setFileRules(rules)
+    one.path.write_text(config.serialize())
+    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b"))
+    assert space_of(loaded(two.path), "sh010_b.jpg") == NAME
 
 
 def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
