@@ -3,8 +3,8 @@
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import PyOpenColorIO as OCIO
 
@@ -13,9 +13,8 @@ from ..plates.frame_pattern import literal
 #: The family of every plate's color space, which sets its rules apart from others.
 FAMILY = "Camera Response"
 
-#: End the names of a plate's rules for linear files, and for files that get no space of their own, after the name of its
-#: color space and this separator, which names of plates do not hold.
-SEPARATOR, LINEAR, SHARED = ": ", ": linear", ": shared"
+#: End the names of rules for linear files, and for files without a space of their own. No plate's name holds a colon.
+LINEAR, SHARED = ": linear", ": shared"
 
 #: File names, without suffix, that cameras and programs give again and again, in lower case: four characters and a
 #: number of four digits or five (JEITA CP-3461, "Design rule for Camera File system", and its followers), a number
@@ -31,19 +30,11 @@ COUNTER_NAMES = (
 #: The most patterns of one rule: OpenColorIO's regular expressions fail with 4000.
 MOST_PATTERNS = 100
 
-#: What the regular expressions of rules begin with: any folder.
-ANY_FOLDER = r"(.*[/\\])?("
-
 #: Frame numbers at the end of a name: shot.0001, shot.-0001.
 FRAME_NUMBER = re.compile(r"\.-?[0-9]{2,}$")
 
 
-#: Matches a number in a pattern, unlike the character, which is `[#]`.
-NUMBER = re.compile(r"(?<!\[)#|#(?!\])")
-
-
-@dataclass(frozen=True)
-class FileClaim:
+class FileClaim(NamedTuple):
     """Patterns of files that are to have a color space; if it is "", they get none. `rule` names their file rule."""
 
     rule: str
@@ -65,7 +56,7 @@ def linear_patterns(
     `stem` is the stem of the plate's files, for example "clip" or "shot.0001"; `plates` is the pattern of a sequence.
     A still has no frames: others' renders are called so.
     """
-    named = map(_linear_pattern, names)
+    named = [re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name)) for name in names]
     sequence, *_ = plates.rpartition(".")
     frames = [sequence + ".exr"] if "#" in sequence else []
     frames += [FRAME_NUMBER.sub("", stem) + ".#.exr"] if is_movie or FRAME_NUMBER.search(stem) else []
@@ -79,11 +70,9 @@ def example(pattern: str) -> str:
 
 def is_counter_name(pattern: str) -> bool:
     """Return whether many files of others are likely to have a name such as "IMG_0001.JPG", unlike "IMG_0001.#.exr"."""
-    if pattern.endswith(".#.exr"):
-        return False
     name = example(pattern)
     stem = FRAME_NUMBER.sub("", name.rpartition(".")[0] or name).lower()
-    return any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
+    return not pattern.endswith(".#.exr") and any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
 
 
 def rule_regex(patterns: Iterable[str]) -> str:
@@ -93,7 +82,7 @@ def rule_regex(patterns: Iterable[str]) -> str:
     behind a dot, and `[#]` for the character itself; none of them matches a separator of folders. A pattern holds for
     full names, in any folder, in upper and lower case.
     """
-    return ANY_FOLDER + "|".join(map(_pattern_regex, patterns)) + ")"
+    return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
 
 def add_file_rules(config: OCIO.Config, claims: Sequence[FileClaim]) -> tuple[str, ...]:
@@ -103,28 +92,25 @@ def add_file_rules(config: OCIO.Config, claims: Sequence[FileClaim]) -> tuple[st
     stand in a rule behind all others, which changes nothing: there a third plate of the name finds them.
     """
     rules = config.getFileRules()
-    every = [(index, _claim(config, rules, index)) for index in reversed(range(rules.getNumEntries()))]
-    earlier = [(index, claim) for index, claim in every if claim]
-    shared = _shared_patterns([*(claim for _, claim in earlier), *claims])
-    losing = [*(claim for _, claim in earlier if claim.space), *claims]
-    without = {each.lower(): each for claim in losing for each in claim.patterns if each in shared}
-    for index, claim in earlier:
-        if claim.space and not shared.isdisjoint(claim.patterns):
-            rules.removeRule(index)
-            _insert(rules, index, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
+    last = rules.getNumEntries() - 1
+    earlier = {index: claim for index in range(last, -1, -1) if (claim := _claim(config, rules, index))}
+    shared = _shared_patterns([*earlier.values(), *claims])
+    losing = {index: claim for index, claim in earlier.items() if claim.space and not shared.isdisjoint(claim.patterns)}
+    lost = {each.lower(): each for claim in (*losing.values(), *claims) for each in claim.patterns if each in shared}
+    for claim in claims[:1]:  # a rule of one plate is enough
+        _insert(rules, last, plate_of_rule(claim.rule) + SHARED, rules.getColorSpace(last), list(lost.values()))
+    for index, claim in losing.items():
+        rules.removeRule(index)
+        _insert(rules, index, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
     for claim in claims:
         _insert(rules, 0, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
-    if without:
-        last = rules.getNumEntries() - 1
-        name = plate_of_rule(claims[0].rule) + SHARED
-        _insert(rules, last, name, rules.getColorSpace(last), list(without.values()))
     config.setFileRules(rules)
-    return tuple(without.values())
+    return tuple(lost.values())
 
 
 def plate_of_rule(rule: str) -> str:
     """Return the color space of the plate that a rule of this name belongs to."""
-    return rule.partition(SEPARATOR)[0]
+    return rule.partition(": ")[0]
 
 
 def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
@@ -138,18 +124,18 @@ def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
 def _insert(rules: OCIO.FileRules, index: int, name: str, space: str, patterns: Sequence[str]) -> None:
     """Put rules for patterns at a place, as many as `MOST_PATTERNS` makes of them."""
     for start in range(0, len(patterns), MOST_PATTERNS):
-        number = f"{SEPARATOR}{start // MOST_PATTERNS + 1}" if start else ""
-        rules.insertRule(index, name + number, space, rule_regex(patterns[start : start + MOST_PATTERNS]))
+        part = f": {start // MOST_PATTERNS + 1}" if start else ""
+        rules.insertRule(index, name + part, space, rule_regex(patterns[start : start + MOST_PATTERNS]))
 
 
 def _claim(config: OCIO.Config, rules: OCIO.FileRules, index: int) -> FileClaim | None:
     """Return what a plate's rule claims; None if a rule is another's, or somebody has changed its expression."""
     name, regex = rules.getName(index), rules.getRegex(index)
     plate, patterns = config.getColorSpace(plate_of_rule(name)), _patterns(regex)
-    is_ours = rule_regex(patterns).replace("-?", "") == regex.replace("-?", "")  # frames below 0 were not ours before
-    if plate is None or plate.getFamily() != FAMILY or not is_ours:
-        return None
-    return FileClaim(name, "" if SHARED in name else rules.getColorSpace(index), patterns)
+    is_same = rule_regex(patterns).replace("-?", "") == regex.replace("-?", "")  # earlier, no frames were below 0
+    if plate and plate.getFamily() == FAMILY and is_same:
+        return FileClaim(name, "" if SHARED in name else rules.getColorSpace(index), patterns)
+    return None
 
 
 def _patterns(regex: str) -> tuple[str, ...]:
@@ -161,18 +147,17 @@ def _patterns(regex: str) -> tuple[str, ...]:
         return "/" if match[0] == "|" else literal(match[match.lastindex or 0])  # no name holds a "/"
 
     tokens = r"(?:-\?)?\[0-9\]\+|\[(.).\]|\((.)\|[^)]*\)|\\(.)|."
-    return tuple(re.sub(tokens, pattern, regex.removeprefix(ANY_FOLDER)[:-1], flags=re.DOTALL).split("/"))
+    return tuple(re.sub(tokens, pattern, regex[len(rule_regex([])) - 1 : -1], flags=re.DOTALL).split("/"))
 
 
 def _shared_patterns(claims: Iterable[FileClaim]) -> set[str]:
     """Return the patterns of claims that get no space, or have a file in common with one of another space."""
-    groups = defaultdict[str, list[tuple[str, str]]](list)
-    for claim in claims:
-        for pattern in claim.patterns:
-            groups[re.sub("[-0-9#]", "", pattern.casefold())].append((pattern, claim.space))  # alike but for numbers
+    alike = defaultdict[str, list[tuple[str, str]]](list)  # but for numbers
+    for pattern, space in ((pattern, claim.space) for claim in claims for pattern in claim.patterns):
+        alike[re.sub("[-0-9#]", "", pattern.casefold())].append((pattern, space))
     return {
         pattern
-        for group in groups.values()
+        for group in alike.values()
         for pattern, space in group
         if not space or any(other != space and _have_common(pattern, another) for another, other in group)
     }
@@ -182,15 +167,10 @@ def _have_common(one: str, other: str) -> bool:
     """Return whether two patterns have a file in common."""
     if "#" not in one + other:
         return one.casefold() == other.casefold()
-    parts = [NUMBER.split(pattern) for pattern in (one, other)]
+    parts = [re.split(r"(?<!\[)#|#(?!\])", pattern) for pattern in (one, other)]  # at numbers, not at [#]
     mixed = (f"{head[0]}#{tail[-1]}" for head, tail in product(parts, parts))
     regexes = [rule_regex([pattern]) for pattern in (one, other)]
     return any(all(re.fullmatch(regex, example(name)) for regex in regexes) for name in (one, other, *mixed))
-
-
-def _linear_pattern(name: str) -> str:
-    """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
-    return re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name))
 
 
 def _pattern_regex(pattern: str) -> str:

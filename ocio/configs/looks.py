@@ -70,7 +70,8 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
         )
     else:
         photo = Path(lut_file.name)
-        space = replace(PlateColorSpace.from_outputs(OutputFiles.named(folder, [photo]), photo), file_patterns=())
+        space = PlateColorSpace.from_outputs(OutputFiles.named(folder, [photo]), photo)
+        space = replace(space, file_patterns=(), linear_patterns=())
     return Look(space, _inverse_response(lut_file), folder.name)
 
 

@@ -86,10 +86,9 @@ def add_plate_color_spaces(
 ) -> tuple[str, ...]:
     """Add plates' color spaces and file rules to a config, in place; return the patterns that get no rule.
 
-    Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Files for
-    which the config has no space get no rule, nor do files that several plates have and, without `has_counters`, names
-    that cameras repeat. Raise a ConfigError if the config has one of the names already, or cannot convert linear
-    Rec.709 to its reference.
+    Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Files of
+    several plates get no rule, nor do linear ones without a space; nor, without `has_counters`, do names of cameras.
+    Raise a ConfigError if the config has one of the names already, or cannot convert linear Rec.709 to its reference.
     """
     for space in spaces:
         _add_color_space(config, space)
