@@ -10,7 +10,6 @@ from crfnet.configs.file_rules import (
     is_counter_name,
     linear_patterns,
     plate_pattern,
-    plate_rules,
     rule_regex,
 )
 from crfnet.configs.plate_color_space import PlateColorSpace
@@ -50,14 +49,6 @@ def test_a_pattern_holds_for_full_names(pattern, matching, others):
     assert all(re.fullmatch(rule_regex([pattern]), path) for path in matching)
 
 
-def test_several_patterns_are_one_rule():
-    config = portable_config([])
-    add_file_rules(config, [FileClaim("plate", "ACEScct", ("a.jpg", "b.#.png"))])
-    result = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
-    assert result == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
-    assert list(plate_rules(config, "plate").values()) == ["ACEScct"]
-
-
 LINEAR = "Linear Rec.709 (sRGB)"
 
 CAMERA_NAMES = (
@@ -94,13 +85,6 @@ def test_the_linear_files_of_a_plate_are_known_by_name_and_as_frames():
     names = ["shot.0001_linear.exr", "shot.0002_linear.exr", "other_linear.exr"]
     assert linear_patterns("shot.0001", names) == ("shot.#_linear.exr", "other_linear.exr", "shot.#.exr")
     assert linear_patterns("frame_0001", plates="frame_#") == ()  # without a suffix
-
-
-def test_the_linear_files_of_thousands_of_photographs_make_a_rule_that_opencolorio_takes():
-    config = portable_config([])
-    patterns = linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)])
-    add_file_rules(config, [FileClaim("plate", "ACEScct", patterns)])
-    assert config.getColorSpaceFromFilepath("/x/4999_linear.exr")[0] == "ACEScct"
 
 
 def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path):
@@ -172,14 +156,14 @@ def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
     assert two.without_rule == ("größe.png",)
 
 
-def test_a_number_may_go_on_in_a_sequences_frame(tmp_path):
-    looks = [write_look(tmp_path / "a", ["river20001.png"], sequence="river2#.png")]
-    looks += [
-        write_look(tmp_path / "b", ["river20001.png"]),
-        write_look(tmp_path / "c", ["river13.png"], sequence="river#3.png"),
-    ]
-    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
-    assert {space_of(result, name) for name in ("river20001.png", "river25.png", "river203.png")} == {"sRGB - Display"}
+@pytest.mark.parametrize(
+    ("one", "other", "is_shared"),
+    [("v2#.png", "v20001.png", True), ("v2#.png", "v#3.png", True), ("Größe.png", "grÖße.PNG", True)]
+    + [("v2#.png", "v1#.png", False), ("a[#].png", "a#.png", False), ("a-#.png", "a.#.png", False)],
+)
+def test_patterns_are_shared_that_have_a_file_in_common(one, other, is_shared):
+    claims = [FileClaim("a", "ACEScct", (one,)), FileClaim("b", "sRGB", (other,))]
+    assert bool(add_file_rules(portable_config([]), claims)) == is_shared
 
 
 def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate(tmp_path):
