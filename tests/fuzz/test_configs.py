@@ -1,4 +1,5 @@
 from contextlib import suppress
+from itertools import product
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -9,7 +10,7 @@ from crfnet.configs.looks import read_looks
 from crfnet.configs.sources import find_config
 from crfnet_core.errors import CRFNetError
 from tests.helpers.configs import converted, loaded
-from tests.helpers.looks import add, all_names, write_look
+from tests.helpers.looks import STUDIO, add, all_names, space_of, write_look
 from tests.helpers.mutations import mutated, mutated_text
 
 #: Words that are put into configs, with bars between.
@@ -56,5 +57,32 @@ def test_damaged_configs_mean_the_same_with_a_plate_or_are_refused(fuzz, seeds, 
             assert all_names(result) == all_names(base)
             names = all_names(base)["spaces"]
             assert repr(conversions(result, names)) == repr(conversions(base, names))
+
+    fuzz(case)
+
+
+def test_a_file_has_the_space_of_its_only_plate_or_that_of_the_base(fuzz, tmp_path):
+    stems = ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042")
+    spaces = {"lin_rec709_scene": "Linear Rec.709 (sRGB)", "lin_ap0_scene": "ACES2065-1", "unknown": ""}
+    places = [(stem.lower().replace("0001", "0002"), space) for stem, space in product(stems, spaces.values())]
+    folders = enumerate(product(stems, spaces))
+    paths = [write_look(tmp_path / str(index), [f"{stem}.png"], interop_id=name) for index, (stem, name) in folders]
+    looks, base = [read_looks(path)[0] for path in paths], find_config(STUDIO)
+
+    def case(generator):
+        source, expected = (
+            base,
+            {f"{stem}{end}": set() for stem, _ in places for end in (".png", "_linear.exr", "x.png")},
+        )
+        for step in ("one", "two"):
+            chosen = generator.choice(len(looks), 3, replace=False)
+            done = write_derived_config(source, tmp_path / step, [looks[each] for each in chosen], overwrite=True)
+            source = find_config(str(done.path))
+            for (stem, space), plate in zip([places[each] for each in chosen], done.plates, strict=True):
+                expected[f"{stem}.png"].add("" if stem.startswith("img") else plate.name)
+                expected[f"{stem}_linear.exr"].add(space)
+        for name, found in expected.items():
+            only = found.pop() if len(found) == 1 else ""
+            assert space_of(source.config, f"/x/{name.upper()}") == (only or space_of(base.config, name))
 
     fuzz(case)

@@ -158,8 +158,10 @@ def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
 
 @pytest.mark.parametrize(
     ("one", "other", "is_shared"),
-    [("v2#.png", "v20001.png", True), ("v2#.png", "v#3.png", True), ("Größe.png", "grÖße.PNG", True)]
-    + [("v2#.png", "v1#.png", False), ("a[#].png", "a#.png", False), ("a-#.png", "a.#.png", False)],
+    [
+        *(("v2#.png", "v20001.png", True), ("v2#.png", "v#3.png", True), ("Größe.png", "grÖße.PNG", True)),
+        *(("v2#.png", "v1#.png", False), ("a[#].png", "a#.png", False), ("a-#.png", "a.#.png", False)),
+    ],
 )
 def test_patterns_are_shared_that_have_a_file_in_common(one, other, is_shared):
     claims = [FileClaim("a", "ACEScct", (one,)), FileClaim("b", "sRGB", (other,))]
