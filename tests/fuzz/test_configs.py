@@ -1,3 +1,4 @@
+from collections import defaultdict
 from contextlib import suppress
 from itertools import product
 
@@ -62,27 +63,26 @@ def test_damaged_configs_mean_the_same_with_a_plate_or_are_refused(fuzz, seeds, 
 
 
 def test_a_file_has_the_space_of_its_only_plate_or_that_of_the_base(fuzz, tmp_path):
-    stems = ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042")
-    spaces = {"lin_rec709_scene": "Linear Rec.709 (sRGB)", "lin_ap0_scene": "ACES2065-1", "unknown": ""}
-    places = [(stem.lower().replace("0001", "0002"), space) for stem, space in product(stems, spaces.values())]
-    folders = enumerate(product(stems, spaces))
-    paths = [write_look(tmp_path / str(index), [f"{stem}.png"], interop_id=name) for index, (stem, name) in folders]
-    looks, base = [read_looks(path)[0] for path in paths], find_config(STUDIO)
+    base, spaces = find_config(STUDIO), {"lin_rec709_scene": "Linear Rec.709 (sRGB)", "unknown": ""}
+    stems, plates = (
+        ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042"),
+        [],
+    )
+    for stem, (name, space) in product(stems, spaces.items()):
+        look = read_looks(write_look(tmp_path / str(len(plates)), [f"{stem}.png"], interop_id=name))[0]
+        plates.append((stem.lower().replace("0001", "0002"), space, look))
 
     def case(generator):
-        source, expected = (
-            base,
-            {f"{stem}{end}": set() for stem, _ in places for end in (".png", "_linear.exr", "x.png")},
-        )
+        source, expected = base, defaultdict(set)
         for step in ("one", "two"):
-            chosen = generator.choice(len(looks), 3, replace=False)
-            done = write_derived_config(source, tmp_path / step, [looks[each] for each in chosen], overwrite=True)
+            chosen = [plates[index] for index in generator.choice(len(plates), 3, replace=False)]
+            done = write_derived_config(source, tmp_path / step, [look for *_, look in chosen], overwrite=True)
             source = find_config(str(done.path))
-            for (stem, space), plate in zip([places[each] for each in chosen], done.plates, strict=True):
+            for (stem, space, _), plate in zip(chosen, done.plates, strict=True):
                 expected[f"{stem}.png"].add("" if stem.startswith("img") else plate.name)
                 expected[f"{stem}_linear.exr"].add(space)
-        for name, found in expected.items():
-            only = found.pop() if len(found) == 1 else ""
-            assert space_of(source.config, f"/x/{name.upper()}") == (only or space_of(base.config, name))
+        for name, found in [*expected.items(), *((f"x{name}", ()) for name in expected)]:
+            space = found.pop() if len(found) == 1 else ""
+            assert space_of(source.config, f"/x/{name.upper()}") == (space or space_of(base.config, name))
 
     fuzz(case)

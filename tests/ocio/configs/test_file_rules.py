@@ -15,8 +15,8 @@ from crfnet.configs.file_rules import (
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
-from tests.helpers.configs import loaded, rule_names
-from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
+from tests.helpers.configs import loaded
+from tests.helpers.looks import STUDIO, add, space_of, write_look
 
 
 def matched_space(pattern, path):
@@ -150,9 +150,10 @@ def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path, int
 
 def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
     one = add(STUDIO, tmp_path / "one", write_look(tmp_path / "a", ["sky.0001.png", "Größe.png", "c#.png"]))
-    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b", ["größe.png"]))
-    names = ("sky.0002.png", "C#.PNG", "größe.png", "GRÖSSE.PNG")
-    assert [space_of(loaded(two.path), name) for name in names] == ["CRF sky.0001"] * 2 + ["sRGB - Display"] * 2
+    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b", ["sky.0001 linear.png", "größe.png"]))
+    names = ("sky.0001 linear.png", "sky.0002.png", "C#.PNG", "größe.png", "GRÖSSE.PNG")
+    spaces = ["CRF sky.0001 linear", *["CRF sky.0001"] * 2, *["sRGB - Display"] * 2]
+    assert [space_of(loaded(two.path), name) for name in names] == spaces
     assert two.without_rule == ("größe.png",)
 
 
@@ -173,12 +174,6 @@ def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate(tmp_path
     (tmp_path / "each.ocio").write_text(each.serialize())
     done = add(tmp_path / "each.ocio", tmp_path / "show", write_look(tmp_path / "b", ["IMG_0042.JPG"]))
     assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB"
-
-
-def test_a_plate_may_be_called_as_the_linear_files_of_another(tmp_path):
-    looks = [write_look(tmp_path / "a", ["a.jpg"]), write_look(tmp_path / "b", ["a linear.jpg"])]
-    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
-    assert [space_of(result, name) for name in ("a.jpg", "a linear.jpg")] == ["CRF a", "CRF a linear"]
 
 
 def test_hundreds_of_photographs_have_rules_and_no_other_file(tmp_path):
@@ -215,9 +210,3 @@ class TestRules:
         linear = result.getColorSpace(interop_id).getName()
         for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_050.exr"):
             assert space_of(result, path) == linear
-
-    @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
-    def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
-        assert rule_names(loaded(done.path))[:1] == [NAME]
-        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"
