@@ -69,8 +69,7 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
             linear_primaries=_linear_primaries(document),
         )
     else:
-        photo = Path(lut_file.name)
-        space = PlateColorSpace.from_outputs(OutputFiles.named(folder, [photo]), photo)
+        space = PlateColorSpace.from_outputs(OutputFiles.named(folder, [lut_file]), lut_file)
         space = replace(space, file_patterns=(), linear_patterns=())
     return Look(space, _inverse_response(lut_file), folder.name)
 

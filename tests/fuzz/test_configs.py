@@ -7,7 +7,7 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.configs.derived import write_derived_config
-from crfnet.configs.looks import read_looks
+from crfnet.configs.looks import Look, read_looks
 from crfnet.configs.sources import find_config
 from crfnet_core.errors import CRFNetError
 from tests.helpers.configs import converted, loaded
@@ -64,10 +64,8 @@ def test_damaged_configs_mean_the_same_with_a_plate_or_are_refused(fuzz, seeds, 
 
 def test_a_file_has_the_space_of_its_only_plate_or_that_of_the_base(fuzz, tmp_path):
     base, spaces = find_config(STUDIO), {"lin_rec709_scene": "Linear Rec.709 (sRGB)", "unknown": ""}
-    stems, plates = (
-        ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042"),
-        [],
-    )
+    stems = ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042")
+    plates = list[tuple[str, str, Look]]()
     for stem, (name, space) in product(stems, spaces.items()):
         look = read_looks(write_look(tmp_path / str(len(plates)), [f"{stem}.png"], interop_id=name))[0]
         plates.append((stem.lower().replace("0001", "0002"), space, look))

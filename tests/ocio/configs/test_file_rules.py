@@ -12,7 +12,7 @@ from crfnet.configs.file_rules import (
     plate_pattern,
     rule_regex,
 )
-from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_spaces
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
 from tests.helpers.configs import loaded
@@ -104,19 +104,15 @@ def test_linear_frames_have_a_rule_where_the_base_knows_linear_files_by_their_na
     assert [space_of(loaded(done.path), name) for name in names] == [LINEAR] * 3 + ["ACES2065-1"]
 
 
-def test_linear_frames_of_a_name_that_cameras_repeat_are_named(tmp_path):
-    look = write_look(tmp_path / "look", ["shot_0001.png"], sequence="shot_#.png")
-    assert set(add(STUDIO, tmp_path / "new", look).without_rule) == {"shot_#.png", "shot_#.exr"}
-
-
 @pytest.mark.parametrize("order", ["abc", "acb", "bca", "cab"])
 def test_a_sequence_and_another_shots_frame_of_its_names_get_no_rule(tmp_path, order):
     names = {"a": "skyline_001.png", "b": "skyline_001.png", "c": "skyline_002.png"}
     sequences = {"a": "skyline_#.png"}
     looks = [write_look(tmp_path / each, [names[each]], sequence=sequences.get(each, "")) for each in order]
     done = add(STUDIO, tmp_path / "show", *looks)
-    spaces = {space_of(loaded(done.path), f"skyline_{number}.png") for number in ("001", "002", "3")}
-    assert spaces == {"sRGB - Display"}
+    assert {space_of(loaded(done.path), f"skyline_{number}.png") for number in ("001", "002", "3")} == {
+        "sRGB - Display"
+    }
     assert set(done.without_rule) == {"skyline_#.png", "skyline_001.png", "skyline_002.png"}
 
 
@@ -169,19 +165,17 @@ def test_patterns_are_shared_that_have_a_file_in_common(one, other, is_shared):
     assert bool(add_file_rules(portable_config([]), claims)) == is_shared
 
 
-def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate(tmp_path):
-    each = portable_config([PlateColorSpace("CRF IMG_0042", "a.spi1d", file_patterns=("IMG_0042.JPG",))])
-    (tmp_path / "each.ocio").write_text(each.serialize())
-    done = add(tmp_path / "each.ocio", tmp_path / "show", write_look(tmp_path / "b", ["IMG_0042.JPG"]))
-    assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB"
+def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate():
+    first, second = (PlateColorSpace(name, "a.spi1d", file_patterns=("IMG_0042.JPG",)) for name in ("CRF a", "CRF b"))
+    add_plate_color_spaces(config := portable_config([first]), [second], has_counters=False)
+    assert space_of(config, "IMG_0042.JPG") == "sRGB"
 
 
 def test_hundreds_of_photographs_have_rules_and_no_other_file(tmp_path):
     names = [f"still {number}x.jpg" for number in range(250)]
     result = loaded(add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", names)).path)
     assert {space_of(result, name) for name in names} == {"CRF still 0x"}
-    linear = [space_of(result, name) for name in ("still 249x_linear.exr", "other_linear.exr")]
-    assert linear == [LINEAR, "ACES2065-1"]
+    assert [space_of(result, f"{name}_linear.exr") for name in ("still 249x", "other")] == [LINEAR, "ACES2065-1"]
 
 
 def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
@@ -193,10 +187,11 @@ def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
 
 class TestRules:
     def test_a_cameras_own_name_gets_no_rule(self, tmp_path):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]))
+        frames = write_look(tmp_path / "frames", ["shot_0001.png"], sequence="shot_#.png")
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]), frames)
         assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB - Display"
         assert space_of(loaded(done.path), "img_0042_linear.exr") == "Linear Rec.709 (sRGB)"
-        assert done.without_rule == ("IMG_0042.JPG",)
+        assert set(done.without_rule) == {"IMG_0042.JPG", "shot_#.png", "shot_#.exr"}
 
     @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
     def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
