@@ -22,7 +22,7 @@ from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
 from ..luts.rgb_lut import lut_identity
 from ..output_files import all_or_none, check_targets, distinct_names, folded
-from .file_rules import LINEAR_SUFFIX
+from .file_rules import plate_of_rule
 from .files import write_config
 from .looks import Look
 from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, lost_plates, plates_in_config
@@ -119,7 +119,7 @@ def _other_names(config: OCIO.Config) -> Iterator[str]:
     for name in config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL):
         yield from (name, *config.getNamedTransform(name).getAliases())
     rules = config.getFileRules()
-    yield from (rules.getName(index).removesuffix(LINEAR_SUFFIX) for index in range(rules.getNumEntries()))
+    yield from (plate_of_rule(rules.getName(index)) for index in range(rules.getNumEntries()))
 
 
 def _relocated(base: ConfigSource) -> OCIO.Config:

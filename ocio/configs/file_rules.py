@@ -1,8 +1,10 @@
 """File rules of a config: the files of a plate, by their full names in upper or lower case."""
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from itertools import zip_longest
+from itertools import product
+from typing import NamedTuple
 
 import PyOpenColorIO as OCIO
 
@@ -11,8 +13,8 @@ from ..plates.frame_pattern import literal
 #: The family of every plate's color space, which sets its rules apart from others.
 FAMILY = "Camera Response"
 
-#: Ends the name of the rule for linear plates, after the name of the plate's color space.
-LINEAR_SUFFIX = " linear"
+#: End the names of rules for linear files, and for files without a space of their own. No plate's name holds a colon.
+LINEAR, SHARED = ": linear", ": shared"
 
 #: File names, without suffix, that cameras and programs give again and again, in lower case: four characters and a
 #: number of four digits or five (JEITA CP-3461, "Design rule for Camera File system", and its followers), a number
@@ -31,8 +33,13 @@ MOST_PATTERNS = 100
 #: Frame numbers at the end of a name: shot.0001, shot.-0001.
 FRAME_NUMBER = re.compile(r"\.-?[0-9]{2,}$")
 
-#: Matches a number of any length in the regular expressions of rules.
-ANY_NUMBER = r"(?:-\?)?\[0-9\]\+"
+
+class FileClaim(NamedTuple):
+    """Patterns of files that are to have a color space; if it is "", they get none. `rule` names their file rule."""
+
+    rule: str
+    space: str
+    patterns: tuple[str, ...]
 
 
 def plate_pattern(name: str) -> str:
@@ -47,28 +54,25 @@ def linear_patterns(
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
     `stem` is the stem of the plate's files, for example "clip" or "shot.0001"; `plates` is the pattern of a sequence.
-    One pattern stands for more than `MOST_PATTERNS` names. A still has no frames: others' renders are called so.
+    A still has no frames: others' renders are called so.
     """
     named = [re.sub(r"\.-?[0-9]{2,}(?=_linear\.exr$)", ".#", literal(name)) for name in names]
-    if len(names) > MOST_PATTERNS:
-        named = ["*_linear.exr"]
-    frames = [plates.rpartition(".")[0] + ".exr"] if "#" in plates else []
+    sequence, *_ = plates.rpartition(".")
+    frames = [sequence + ".exr"] if "#" in sequence else []
     frames += [FRAME_NUMBER.sub("", stem) + ".#.exr"] if is_movie or FRAME_NUMBER.search(stem) else []
     return tuple(dict.fromkeys([*named, *frames]))
 
 
 def example(pattern: str) -> str:
     """Return a name that a pattern stands for."""
-    return re.sub(r"[*#]", "0001", pattern)
+    return re.sub(r"\[([#*?\\])\]|[*#]", lambda match: match[1] or "0001", pattern)
 
 
 def is_counter_name(pattern: str) -> bool:
     """Return whether many files of others are likely to have a name such as "IMG_0001.JPG", unlike "IMG_0001.#.exr"."""
-    if pattern.endswith(".#.exr"):
-        return False
     name = example(pattern)
     stem = FRAME_NUMBER.sub("", name.rpartition(".")[0] or name).lower()
-    return any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
+    return not pattern.endswith(".#.exr") and any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
 
 
 def rule_regex(patterns: Iterable[str]) -> str:
@@ -81,70 +85,92 @@ def rule_regex(patterns: Iterable[str]) -> str:
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
 
-def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
-    """Put the file rule `name` of a plate before all others of a config, in place; return whether it leads to `space`.
+def add_file_rules(config: OCIO.Config, claims: Sequence[FileClaim]) -> tuple[str, ...]:
+    """Put file rules of new plates before all others of a config, in place; return the patterns that get none.
 
-    Where rules of other plates lead one of the files to another space, none gets the file: all these rules then stand
-    behind all others and change nothing; there a third plate of the name finds them.
+    Files that plates, also earlier ones of the config, would lead to different spaces get none of these. Their patterns
+    stand in a rule behind all others, which changes nothing: there a third plate of the name finds them.
     """
     rules = config.getFileRules()
-    is_shared = [_release(config, rules, pattern, space) for pattern in patterns]
-    if any(is_shared):
-        _insert_last(rules, name, rule_regex(patterns))
-    else:
-        rules.insertRule(0, name, space, rule_regex(patterns))
+    last = rules.getNumEntries() - 1
+    earlier = {index: claim for index in range(last, -1, -1) if (claim := _claim(config, rules, index))}
+    shared = _shared_patterns([*earlier.values(), *claims])
+    losing = {index: claim for index, claim in earlier.items() if claim.space and not shared.isdisjoint(claim.patterns)}
+    lost = {each.lower(): each for claim in (*losing.values(), *claims) for each in claim.patterns if each in shared}
+    for claim in claims[:1]:  # a rule of one plate is enough
+        _insert(rules, last, plate_of_rule(claim.rule) + SHARED, rules.getColorSpace(last), list(lost.values()))
+    for index, claim in losing.items():
+        rules.removeRule(index)
+        _insert(rules, index, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
+    for claim in claims:
+        _insert(rules, 0, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
     config.setFileRules(rules)
-    return not any(is_shared)
+    return tuple(lost.values())
 
 
-def color_space_of_file(config: OCIO.Config, name: str) -> str:
-    """Return the color space, not the role, or the named transform that the rules of a config give to a file."""
-    name, _ = config.getColorSpaceFromFilepath(name)
-    space = config.getColorSpace(name)
-    return str(space.getName() if space else name)
+def plate_of_rule(rule: str) -> str:
+    """Return the color space of the plate that a rule of this name belongs to."""
+    return rule.partition(": ")[0]
 
 
 def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
     """Return the color space of each file rule of a plate that changes it, by the rule's regular expression."""
-    rules, names = config.getFileRules(), (space, space + LINEAR_SUFFIX)
-    usual = rules.getColorSpace(rules.getNumEntries() - 1)
-    indices = [index for index in range(rules.getNumEntries()) if rules.getName(index) in names]
-    spaces = {rules.getRegex(index): rules.getColorSpace(index) for index in indices}
-    return {regex: space for regex, space in spaces.items() if space != usual}
+    rules = config.getFileRules()
+    names = {index: rules.getName(index) for index in range(rules.getNumEntries())}
+    own = [index for index, name in names.items() if plate_of_rule(name) == space and SHARED not in name]
+    return {rules.getRegex(index): rules.getColorSpace(index) for index in own}
 
 
-def _release(config: OCIO.Config, rules: OCIO.FileRules, pattern: str, space: str) -> bool:
-    """Take the files of a pattern from plates whose rules lead them to another space; return whether there are some."""
-    same, shared = _same_files(pattern), list[tuple[int, str, str]]()
-    for index in range(rules.getNumEntries() - 1):  # the last one is the default
-        name, regex = rules.getName(index), rules.getRegex(index)
-        if same.search(regex) and _is_of_plate(config, name) and rules.getColorSpace(index) != space:
-            shared.append((index, name, regex))
-    for index, *_ in reversed(shared):
-        rules.removeRule(index)
-    for _, name, regex in shared:
-        _insert_last(rules, name, regex)
-    return bool(shared)
+def _insert(rules: OCIO.FileRules, index: int, name: str, space: str, patterns: Sequence[str]) -> None:
+    """Put rules for patterns at a place, as many as `MOST_PATTERNS` makes of them."""
+    for start in range(0, len(patterns), MOST_PATTERNS):
+        part = f": {start // MOST_PATTERNS + 1}" if start else ""
+        rules.insertRule(index, name + part, space, rule_regex(patterns[start : start + MOST_PATTERNS]))
 
 
-def _insert_last(rules: OCIO.FileRules, name: str, regex: str) -> None:
-    """Put a rule behind all others, to the space of any other file."""
-    last = rules.getNumEntries() - 1
-    rules.insertRule(last, name, rules.getColorSpace(last), regex)
+def _claim(config: OCIO.Config, rules: OCIO.FileRules, index: int) -> FileClaim | None:
+    """Return what a plate's rule claims; None if a rule is another's, or somebody has changed its expression."""
+    name, regex = rules.getName(index), rules.getRegex(index)
+    plate, patterns = config.getColorSpace(plate_of_rule(name)), _patterns(regex)
+    is_same = rule_regex(patterns).replace("-?", "") == regex.replace("-?", "")  # earlier, no frames were below 0
+    if plate and plate.getFamily() == FAMILY and is_same:
+        return FileClaim(name, "" if SHARED in name else rules.getColorSpace(index), patterns)
+    return None
 
 
-def _same_files(pattern: str) -> re.Pattern[str]:
-    """Return what finds names of a pattern, in which any number is a frame, in the regular expression of a rule."""
-    parts = re.split(f"({ANY_NUMBER}|[0-9]+)", _pattern_regex(pattern))
-    numbers = [f"({ANY_NUMBER}|{part if part.isdigit() else '[0-9]+'})" for part in parts[1::2]]
-    text = "".join(re.escape(part) + number for part, number in zip_longest(parts[::2], numbers, fillvalue=""))
-    return re.compile(f"[(|]{text}[)|]")
+def _patterns(regex: str) -> tuple[str, ...]:
+    """Return the patterns of an expression of `rule_regex`, in lower case."""
+
+    def pattern(match: re.Match[str]) -> str:
+        if match[0].endswith("]+"):
+            return "#"
+        return "/" if match[0] == "|" else literal(match[match.lastindex or 0])  # no name holds a "/"
+
+    tokens = r"(?:-\?)?\[0-9\]\+|\[(.).\]|\((.)\|[^)]*\)|\\(.)|."
+    return tuple(re.sub(tokens, pattern, regex[len(rule_regex([])) - 1 : -1], flags=re.DOTALL).split("/"))
 
 
-def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
-    """Return whether a rule of this name belongs to a plate."""
-    plate = config.getColorSpace(rule.removesuffix(LINEAR_SUFFIX))
-    return plate is not None and plate.getFamily() == FAMILY
+def _shared_patterns(claims: Iterable[FileClaim]) -> set[str]:
+    """Return the patterns of claims that get no space, or have a file in common with one of another space."""
+    alike = defaultdict[str, list[tuple[str, str]]](list)  # but for numbers
+    for pattern, space in ((pattern, claim.space) for claim in claims for pattern in claim.patterns):
+        alike[re.sub("[-0-9#]", "", pattern.casefold())].append((pattern, space))
+    return {
+        pattern
+        for group in alike.values()
+        for pattern, space in group
+        if not space or any(other != space and _have_common(pattern, another) for another, other in group)
+    }
+
+
+def _have_common(one: str, other: str) -> bool:
+    """Return whether two patterns have a file in common."""
+    if "#" not in one + other:
+        return one.casefold() == other.casefold()
+    parts = [re.split(r"(?<!\[)#|#(?!\])", pattern) for pattern in (one, other)]  # at numbers, not at [#]
+    mixed = (f"{head[0]}#{tail[-1]}" for head, tail in product(parts, parts))
+    regexes = [rule_regex([pattern]) for pattern in (one, other)]
+    return any(all(re.fullmatch(regex, example(name)) for regex in regexes) for name in (one, other, *mixed))
 
 
 def _pattern_regex(pattern: str) -> str:

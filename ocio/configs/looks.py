@@ -16,7 +16,7 @@ from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
 from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
-from .file_rules import MOST_PATTERNS, plate_pattern
+from .file_rules import plate_pattern
 from .files import load_config, plate_exposure
 from .plate_color_space import PlateColorSpace
 from .reference_space import LINEAR_NAMES
@@ -64,13 +64,13 @@ def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
         files = replace(files, linear=tuple(folder / name for name in document["files"]["linear"]))
         space = replace(
             PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document), file_pattern=sequence),
-            file_patterns=tuple(dict.fromkeys([sequence] if sequence else map(plate_pattern, names)))[:MOST_PATTERNS],
+            file_patterns=tuple(dict.fromkeys([sequence] if sequence else map(plate_pattern, names))),
             primaries=_primaries(document),
             linear_primaries=_linear_primaries(document),
         )
     else:
-        photo = Path(lut_file.name)
-        space = replace(PlateColorSpace.from_outputs(OutputFiles.named(folder, [photo]), photo), file_patterns=())
+        space = PlateColorSpace.from_outputs(OutputFiles.named(folder, [lut_file]), lut_file)
+        space = replace(space, file_patterns=(), linear_patterns=())
     return Look(space, _inverse_response(lut_file), folder.name)
 
 

@@ -17,10 +17,9 @@ from ..errors import ConfigError
 from ..output_files import OutputFiles
 from .file_rules import (
     FAMILY,
-    LINEAR_SUFFIX,
-    add_file_rule,
-    color_space_of_file,
-    example,
+    LINEAR,
+    FileClaim,
+    add_file_rules,
     is_counter_name,
     linear_patterns,
     plate_pattern,
@@ -89,30 +88,26 @@ def add_plate_color_spaces(
 ) -> tuple[str, ...]:
     """Add plates' color spaces and file rules to a config, in place; return the patterns that get no rule.
 
-    Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Linear
-    files get a rule where the config has their space and does not give it to them by itself; files that several plates
-    have get none, nor do without `has_counters` names that cameras repeat. Raise a ConfigError if the config has one of
-    the names already, or cannot convert linear Rec.709 to its reference.
+    Profile version 1 has neither aliases nor file rules: they are left out there, and so is an exposure of 0. Files of
+    several plates get no rule, nor do linear ones without a space; nor, without `has_counters`, do names of cameras.
+    Raise a ConfigError if the config has one of the names already, or cannot convert linear Rec.709 to its reference.
     """
-    rules = [rule for space in spaces for rule in _rules(config, space)]
-    without = list[str]()
     for space in spaces:
         _add_color_space(config, space)
-    for name, target, patterns in rules:
+    claims = [claim for space in spaces for claim in _claims(config, space, has_counters=has_counters)]
+    if config.getMajorVersion() < 2:
+        return tuple(dict.fromkeys(pattern for claim in claims for pattern in claim.patterns))
+    return add_file_rules(config, claims)
+
+
+def _claims(config: OCIO.Config, space: PlateColorSpace, *, has_counters: bool) -> Iterator[FileClaim]:
+    """Yield which files of a plate are to have which color space of a config."""
+    linear = linear_space_name(config, space.linear_primaries) if space.linear_primaries else None
+    rules = {space.name + LINEAR: (linear, space.linear_patterns), space.name: (space.name, space.file_patterns)}
+    for rule, (target, patterns) in rules.items():
         counters = [] if has_counters else [pattern for pattern in patterns if is_counter_name(pattern)]
-        own = [pattern for pattern in patterns if pattern not in counters]
-        is_added = not own or (config.getMajorVersion() >= 2 and target and add_file_rule(config, name, target, own))
-        without += counters if is_added else patterns
-    return tuple(dict.fromkeys(without))
-
-
-def _rules(config: OCIO.Config, space: PlateColorSpace) -> Iterator[tuple[str, str, Sequence[str]]]:
-    """Yield the name, the color space and the patterns of a plate's rules; "" is a space that the config lacks."""
-    if space.linear_primaries and config.getMajorVersion() >= 2:
-        linear = linear_space_name(config, space.linear_primaries) or ""
-        others = [each for each in space.linear_patterns if color_space_of_file(config, example(each)) != linear]
-        yield space.name + LINEAR_SUFFIX, linear, others
-    yield space.name, space.name, space.file_patterns
+        yield FileClaim(rule, target or "", tuple(pattern for pattern in patterns if pattern not in counters))
+        yield FileClaim(rule, "", tuple(counters))
 
 
 def _add_color_space(config: OCIO.Config, space: PlateColorSpace) -> None:

@@ -1,15 +1,17 @@
+from collections import defaultdict
 from contextlib import suppress
+from itertools import product
 
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.configs.derived import write_derived_config
-from crfnet.configs.looks import read_looks
+from crfnet.configs.looks import Look, read_looks
 from crfnet.configs.sources import find_config
 from crfnet_core.errors import CRFNetError
 from tests.helpers.configs import converted, loaded
-from tests.helpers.looks import add, all_names, write_look
+from tests.helpers.looks import STUDIO, add, all_names, space_of, write_look
 from tests.helpers.mutations import mutated, mutated_text
 
 #: Words that are put into configs, with bars between.
@@ -56,5 +58,29 @@ def test_damaged_configs_mean_the_same_with_a_plate_or_are_refused(fuzz, seeds, 
             assert all_names(result) == all_names(base)
             names = all_names(base)["spaces"]
             assert repr(conversions(result, names)) == repr(conversions(base, names))
+
+    fuzz(case)
+
+
+def test_a_file_has_the_space_of_its_only_plate_or_that_of_the_base(fuzz, tmp_path):
+    base, spaces = find_config(STUDIO), {"lin_rec709_scene": "Linear Rec.709 (sRGB)", "unknown": ""}
+    stems = ("bg", "BG", "bg_linear", "shot.0001", "shot.0002", "a", "a linear", "größe", "GRÖßE", "IMG_0042")
+    plates = list[tuple[str, str, Look]]()
+    for stem, (name, space) in product(stems, spaces.items()):
+        look = read_looks(write_look(tmp_path / str(len(plates)), [f"{stem}.png"], interop_id=name))[0]
+        plates.append((stem.lower().replace("0001", "0002"), space, look))
+
+    def case(generator):
+        source, expected = base, defaultdict(set)
+        for step in ("one", "two"):
+            chosen = [plates[index] for index in generator.choice(len(plates), 3, replace=False)]
+            done = write_derived_config(source, tmp_path / step, [look for *_, look in chosen], overwrite=True)
+            source = find_config(str(done.path))
+            for (stem, space, _), plate in zip(chosen, done.plates, strict=True):
+                expected[f"{stem}.png"].add("" if stem.startswith("img") else plate.name)
+                expected[f"{stem}_linear.exr"].add(space)
+        for name, found in [*expected.items(), *((f"x{name}", ()) for name in expected)]:
+            space = found.pop() if len(found) == 1 else ""
+            assert space_of(source.config, f"/x/{name.upper()}") == (space or space_of(base.config, name))
 
     fuzz(case)

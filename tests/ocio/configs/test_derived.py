@@ -164,7 +164,8 @@ class TestBase:
         config.setRole("scene_linear", "lin_srgb")
         studio.write_text(config.serialize())
         done = add(studio, tmp_path / "new", small_look)
-        assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, ("plate01.jpg",))
+        names = ("plate01_linear.exr", "plate01.jpg")
+        assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, names)
         assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
 
     @pytest.mark.parametrize("taken", [NAME, "crf_plate01"])

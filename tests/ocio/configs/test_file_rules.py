@@ -5,24 +5,25 @@ import re
 import pytest
 
 from crfnet.configs.file_rules import (
-    add_file_rule,
+    FileClaim,
+    add_file_rules,
     is_counter_name,
     linear_patterns,
     plate_pattern,
-    plate_rules,
     rule_regex,
 )
+from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_spaces
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
-from tests.helpers.configs import loaded, rule_names
+from tests.helpers.configs import loaded
 from tests.helpers.folders import written
-from tests.helpers.looks import NAME, STUDIO, add, space_of, write_look
+from tests.helpers.looks import STUDIO, add, space_of, write_look
 
 
 def matched_space(pattern, path):
     """The color space that OpenColorIO's own rules give a file."""
     config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", [pattern])
+    add_file_rules(config, [FileClaim("plate", "ACEScct", (pattern,))])
     return config.getColorSpaceFromFilepath(path)[0]
 
 
@@ -47,14 +48,6 @@ def test_a_pattern_holds_for_full_names(pattern, matching, others):
     assert {path: matched_space(pattern, path) for path in matching} == dict.fromkeys(matching, "ACEScct")
     assert "ACEScct" not in [matched_space(pattern, path) for path in others]
     assert all(re.fullmatch(rule_regex([pattern]), path) for path in matching)
-
-
-def test_several_patterns_are_one_rule():
-    config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", ["a.jpg", "b.#.png"])
-    result = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
-    assert result == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
-    assert list(plate_rules(config, "plate").values()) == ["ACEScct"]
 
 
 LINEAR = "Linear Rec.709 (sRGB)"
@@ -92,12 +85,7 @@ def test_a_frame_stands_for_all_frames(name, pattern):
 def test_the_linear_files_of_a_plate_are_known_by_name_and_as_frames():
     names = ["shot.0001_linear.exr", "shot.0002_linear.exr", "other_linear.exr"]
     assert linear_patterns("shot.0001", names) == ("shot.#_linear.exr", "other_linear.exr", "shot.#.exr")
-
-
-def test_the_linear_files_of_thousands_of_photographs_make_a_rule_that_opencolorio_takes():
-    config = portable_config([])
-    add_file_rule(config, "plate", "ACEScct", linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)]))
-    assert config.getColorSpaceFromFilepath("/x/4999_linear.exr")[0] == "ACEScct"
+    assert linear_patterns("frame_0001", plates="frame_#") == ()  # without a suffix
 
 
 def test_linear_files_for_which_the_base_has_no_space_are_named(studio, tmp_path):
@@ -113,13 +101,8 @@ def test_linear_frames_have_a_rule_where_the_base_knows_linear_files_by_their_na
     base.setFileRules(rules)
     (tmp_path / "base.ocio").write_text(base.serialize())
     done = add(tmp_path / "base.ocio", tmp_path / "new", write_look(tmp_path / "look", ["bg.0001.jpg"]))
-    names = ("bg.0002.exr", "bg.0002_linear.exr", "other.0002.exr")
-    assert [space_of(loaded(done.path), name) for name in names] == [LINEAR, LINEAR, "ACES2065-1"]
-
-
-def test_linear_frames_of_a_name_that_cameras_repeat_are_named(tmp_path):
-    look = write_look(tmp_path / "look", ["shot_0001.png"], sequence="shot_#.png")
-    assert set(add(STUDIO, tmp_path / "new", look).without_rule) == {"shot_#.png", "shot_#.exr"}
+    names = ("bg.0002.exr", "bg.0002_linear.exr", "BG.0002_LINEAR.EXR", "other.0002.exr")
+    assert [space_of(loaded(done.path), name) for name in names] == [LINEAR] * 3 + ["ACES2065-1"]
 
 
 @pytest.mark.parametrize("order", ["abc", "acb", "bca", "cab"])
@@ -127,8 +110,11 @@ def test_a_sequence_and_another_shots_frame_of_its_names_get_no_rule(tmp_path, o
     names = {"a": "skyline_001.png", "b": "skyline_001.png", "c": "skyline_002.png"}
     sequences = {"a": "skyline_#.png"}
     looks = [write_look(tmp_path / each, [names[each]], sequence=sequences.get(each, "")) for each in order]
-    result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
-    assert {space_of(result, f"skyline_{number}.png") for number in ("001", "002", "3")} == {"sRGB - Display"}
+    done = add(STUDIO, tmp_path / "show", *looks)
+    assert {space_of(loaded(done.path), f"skyline_{number}.png") for number in ("001", "002", "3")} == {
+        "sRGB - Display"
+    }
+    assert set(done.without_rule) == {"skyline_#.png", "skyline_001.png", "skyline_002.png"}
 
 
 def test_a_rule_of_an_earlier_crfnet_is_of_the_same_files(tmp_path):
@@ -147,11 +133,43 @@ def test_files_of_several_plates_follow_the_rules_of_the_base(tmp_path):
     assert [space_of(result, f"/{shot}/plate01.jpg") for shot in ("sh010", "sh020")] == ["ACEScct", "sRGB"]
 
 
-def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path):
-    look = write_look(tmp_path / "a", interop_id="lin_ap1_scene")
-    done = add(STUDIO, tmp_path / "show", look, write_look(tmp_path / "b"))
-    assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
-    assert "plate01_linear.exr" in done.without_rule
+@pytest.mark.parametrize("interop_id", ["lin_ap1_scene", "lin_ap0_scene", "unknown"])
+@pytest.mark.parametrize("order", [1, -1])
+def test_linear_files_of_one_name_and_different_spaces_get_no_rule(tmp_path, interop_id, order):
+    looks = [write_look(tmp_path / "a", interop_id=interop_id), write_look(tmp_path / "b")][::order]
+    together = add(STUDIO, tmp_path / "show", *looks)
+    one = add(STUDIO, tmp_path / "one", looks[0])
+    for done in (together, add(one.path, tmp_path / "two", looks[1])):
+        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"  # as all OpenEXR files
+        assert "plate01_linear.exr" in done.without_rule
+
+
+def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
+    one = add(STUDIO, tmp_path / "one", write_look(tmp_path / "a", ["sky.0001.png", "Größe.png", "c#.png"]))
+    two = add(one.path, tmp_path / "two", write_look(tmp_path / "b", ["sky.0001 linear.png", "größe.png"]))
+    names = ("sky.0001 linear.png", "sky.0002.png", "C#.PNG", "größe.png", "GRÖSSE.PNG")
+    spaces = ["CRF sky.0001 linear", *["CRF sky.0001"] * 2, *["sRGB - Display"] * 2]
+    assert [space_of(loaded(two.path), name) for name in names] == spaces
+    assert two.without_rule == ("größe.png",)
+
+
+@pytest.mark.parametrize(("other", "is_shared"), [("v20001.png", True), ("v#3.png", True), ("v1#.png", False)])
+def test_patterns_are_shared_that_have_a_file_in_common(other, is_shared):
+    claims = [FileClaim("a", "ACEScct", ("v2#.png",)), FileClaim("b", "sRGB", (other,))]
+    assert bool(add_file_rules(portable_config([]), claims)) == is_shared
+
+
+def test_a_name_that_cameras_repeat_is_also_the_one_of_an_earlier_plate():
+    first, second = (PlateColorSpace(name, "a.spi1d", file_patterns=("IMG_0042.JPG",)) for name in ("CRF a", "CRF b"))
+    add_plate_color_spaces(config := portable_config([first]), [second], has_counters=False)
+    assert space_of(config, "IMG_0042.JPG") == "sRGB"
+
+
+def test_hundreds_of_photographs_have_rules_and_no_other_file(tmp_path):
+    names = [f"still {number}x.jpg" for number in range(250)]
+    result = loaded(add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", names)).path)
+    assert {space_of(result, name) for name in names} == {"CRF still 0x"}
+    assert [space_of(result, f"{name}_linear.exr") for name in ("still 249x", "other")] == [LINEAR, "ACES2065-1"]
 
 
 def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
@@ -163,10 +181,11 @@ def test_a_movie_has_rules_for_its_file_and_its_linear_frames(tmp_path):
 
 class TestRules:
     def test_a_cameras_own_name_gets_no_rule(self, tmp_path):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]))
+        frames = write_look(tmp_path / "frames", ["shot_0001.png"], sequence="shot_#.png")
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]), frames)
         assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB - Display"
         assert space_of(loaded(done.path), "img_0042_linear.exr") == "Linear Rec.709 (sRGB)"
-        assert done.without_rule == ("IMG_0042.JPG",)
+        assert set(done.without_rule) == {"IMG_0042.JPG", "shot_#.png", "shot_#.exr"}
 
     @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
     def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
@@ -180,9 +199,3 @@ class TestRules:
         linear = result.getColorSpace(interop_id).getName()
         for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr", "skyline_050.exr"):
             assert space_of(result, path) == linear
-
-    @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
-    def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):
-        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
-        assert rule_names(loaded(done.path))[:1] == [NAME]
-        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"

@@ -67,7 +67,7 @@ def test_a_lut_from_elsewhere_will_do(tmp_path, suffix):
     write_lut(tmp_path / f"cam{suffix}", LUT)
     (look,) = read_looks(tmp_path / f"cam{suffix}")
     assert (look.space.name, look.space.exposure, look.space.file_patterns) == ("CRF cam", 0, ())
-    assert (look.space.linear_primaries, look.lut) == (None, LUT)
+    assert (look.space.linear_patterns, look.space.linear_primaries, look.lut) == ((), None, LUT)
 
 
 @pytest.mark.parametrize(
