@@ -160,8 +160,8 @@ SENTENCES: Mapping[str, str] = {
     " is worse (E_est 2.52, 0.235 stop) than the mean of other cameras (1.27, 0.102), so another model is the default",
     "as_written": "{text}",
     "clipped": "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure",
-    "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop"
-    " the raw file to linear light, which needs no estimate",
+    "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file; linear"
+    " light, which such programs write, too, needs no estimate",
     "edited": "saved by {editor}, which may have changed the tones: give the camera's own file",
     "gray": "gray photograph: one channel says less than three, and it may be a mixture of channels",
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",

@@ -36,6 +36,9 @@ ColorCodes: TypeAlias = tuple[int, ...]
 UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 TRANSFERS = {10: "bt2020-10", 14: "smpte2084"}
 
+#: PQ and HLG, which hold if the container states one, whatever the stream says.
+HDR_TRANSFERS = (16, 18)
+
 #: Words of the messages of FFmpeg's demuxers about files that are cut short.
 CUT = ("partial file", "ended prematurely")
 
@@ -243,7 +246,7 @@ def _described(
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
         rate=Fraction(min(filter(None, (stream.average_rate, stream.base_rate)), default=0)),  # of DV, 60000 and 25
-        color=_color_tags(picture.tags, metadata),
+        color=_color_tags(cicp_tags(codes[2:]) if codes[3] in HDR_TRANSFERS else picture.tags, metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),

@@ -95,7 +95,7 @@ def check_finished(plates: Iterable[tuple[Path, str]], light: PlateLight, depth:
         elif difference := _difference(written, light, depth):
             raise PlateError("finished_differs", path=path, difference=difference)
     if outdated:
-        more = f" (and {len(outdated) - 1} more like it)" if outdated[1:] else ""
+        more = f", and {len(outdated) - 1} more like it" if outdated[1:] else ""
         raise PlateError("finished_outdated", path=outdated[0], more=more)
 
 

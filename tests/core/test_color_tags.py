@@ -225,6 +225,13 @@ class TestFiles:
             header = read_jpeg_header(with_jpeg_segment(content, 0xE1, whole[:length]))
             assert (header.interop_index, header.has_jfif) == ("", True)
 
+    def test_a_gray_profile_of_a_jpeg_is_not_damaged(self, tmp_path):
+        gray = profile(
+            {"kTRC": sampled_curve(lambda codes: codes**2.2), "wtpt": numbers(b"XYZ ", xyz_of(D50))}, color=b"GRAY"
+        )
+        Image.fromarray(GRAY[..., 0]).save(tmp_path / "a.jpg", icc_profile=gray)
+        assert (self.tags(tmp_path / "a.jpg").source, read_icc(gray).transfer_source) == ("", "ICC profile")
+
     def test_a_profile_may_hold_cicp(self, tmp_path):
         icc = matrix_profile(REC2020, cicp=b"cicp" + bytes(4) + bytes([9, 16, 0, 1]))
         found = self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc))

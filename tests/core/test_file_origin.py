@@ -123,8 +123,9 @@ def test_names_of_encodings_in_profiles(profile, transfer):
         ({}, ()),
         (
             {"software": "GIMP 2.8", "exif_size": (7008, 4672)},
-            ("saved by GIMP 2.8", "scaled from 7008 x 4672 to 3504 x 2336 pixels after the camera wrote it"),
+            ("saved by GIMP 2.8", "scaled or cropped from 7008 x 4672 to 3504 x 2336 pixels after the camera wrote it"),
         ),
+        ({"exif_size": (1752, 1168)}, ("scaled from 1752 x 1168 to 3504 x 2336 pixels after the camera wrote it",)),
         ({"raw_file": "1.CR2"}, ("developed from a raw file by a program of Adobe",)),
         (IJG, ("encoded again by a program, as JPEG of quality 92",)),
         ({"width": 640, "height": 480}, ("probably scaled after the camera wrote it (640 x 480 pixels)",)),
@@ -138,6 +139,8 @@ def test_words(fields, words):
 
 def test_words_of_a_camera():
     assert origin(make="DJI", model="FC220").words == ("taken by DJI FC220",)
+    scan = origin(make="KODAK", model="F-135 Plus", width=1500, height=1000)
+    assert scan.words == ("taken by KODAK F-135 Plus, a scanner of film or paper",)
     assert origin(**OWN_CAMERA).words[0] == "taken by Canon EOS 20D, a camera with interchangeable lenses"
 
 

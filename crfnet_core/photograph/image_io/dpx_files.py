@@ -35,7 +35,7 @@ def check_dpx(path: Path, header: Any) -> None:
         "runs": any(encoding),
         "its header does not state where the pixels are": place in _NO_PLACES,
         "lines of 10 bits that end within a word": bits == 10 and packing and samples % 3,
-        "padded lines that its header does not name": is_padded and not header.get_int_attribute(_PADDING),
+        "unnamed padding of lines; 10 bits have none": is_padded and not header.get_int_attribute(_PADDING),
     }
     problem = next((words for words, is_so in problems.items() if is_so), "")
     if problem:

@@ -80,7 +80,12 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|c \(|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
     "minolta": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
-    "kodak": ((r"rfs", _SCANNER), (r"pixpro (sp|orbit)", _UNKNOWN), (r"dcs|pixpro s-1|s-1", _CAMERA), (r"", _COMPACT)),
+    "kodak": (
+        (r"rfs|pakon|f-135", _SCANNER),
+        (r"pixpro (sp|orbit)", _UNKNOWN),
+        (r"dcs|pixpro s-1|s-1", _CAMERA),
+        (r"", _COMPACT),
+    ),
     "hasselblad": ((r"flextight", _SCANNER), (r"l\dd", _UNKNOWN), (r"stellar", _COMPACT), (r"", _CAMERA)),
     "contax": ((r"n digital", _CAMERA), (r"", _COMPACT)),
     "hp": ((r"slate|touchpad", _PHONE), (r"", _COMPACT)),

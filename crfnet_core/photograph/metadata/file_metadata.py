@@ -55,6 +55,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     if (_text(header, "stEvt:action"), _text(header, "stEvt:changed")) == ("saved", "/metadata"):
         history = ""  # programs saved nothing but metadata, such as ratings
+    has_profile = header_attribute(header, "ICCProfile") is not None  # else OpenImageIO has left out a damaged one
     color = header_color_tags(header, file_format, jpeg.interop_index)
     return replace(
         jpeg,
@@ -69,7 +70,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         file_format=file_format,
-        color=color if color.source else replace(color, source=jpeg.color.source),
+        color=color if color.source or has_profile else replace(color, source=jpeg.color.source),
     )
 
 

@@ -216,5 +216,6 @@ def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     size, before = (metadata.width, metadata.height), metadata.exif_size
     now = "{} x {} pixels".format(*size)
     if before and sorted(before) != sorted(size):
-        return "scaled from {} x {} to {} after the camera wrote it".format(*before, now)
-    return f"probably scaled after the camera wrote it ({now})"
+        verb = "scaled" if max(size) > max(before) else "scaled or cropped"
+        return "{} from {} x {} to {} after the camera wrote it".format(verb, *before, now)
+    return "" if origin.device is Device.SCANNER else f"probably scaled after the camera wrote it ({now})"

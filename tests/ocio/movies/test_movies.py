@@ -221,6 +221,23 @@ def test_a_movie_that_is_cut_short_says_so_and_its_last_frame_fails(tmp_path, na
     assert shown[-1] is None
 
 
+@pytest.mark.parametrize(
+    ("index", "place", "reach", "is_cut"),
+    [
+        *((b"sidx", b"moof", 0, True), (b"sidx", b"mfra", 0, False)),
+        *((b"free", b"moof", 4, True), (b"free", b"mdat", 0, True), (b"free", b"mdat", 4, True)),
+        (b"free", b"moof", 0, False),  # nothing shows a cut between fragments without an index
+    ],
+)
+def test_fragments_that_a_cut_has_taken_away_are_missed(tmp_path, index, place, reach, is_cut):
+    """The cut lies before or within the head of the last box of a kind."""
+    muxer = {"movflags": "frag_keyframe+empty_moov+default_base_moof+global_sidx"}
+    content = write_movie(tmp_path / "a.mp4", 24, options={"g": "6"}, muxer=muxer).read_bytes()
+    assert content.count(b"moof") >= 4
+    path = written(tmp_path / "cut.mp4", content[: content.rindex(place) - 4 + reach].replace(b"sidx", index))
+    assert ("the file is cut short" in str(read_stream(path))) == is_cut
+
+
 def test_matroska_that_has_lost_the_place_of_frames_is_refused(tmp_path):
     path = damage(write_movie(tmp_path / "a.mkv", codec="ffv1"), 4, end=0.01, before=20)
     assert refusal_of(PlateError, read_stream, path).code == "movie_undecodable"

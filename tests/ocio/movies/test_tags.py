@@ -8,7 +8,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import MovieFrames
 from crfnet.movies.stream import check_progressive, read_stream
-from crfnet_core.colorimetry import REC2020
+from crfnet_core.colorimetry import REC709, REC2020
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.crafted_files import box
 from tests.helpers.folders import changed
@@ -73,6 +73,14 @@ def test_the_container_counts_where_frames_have_no_tags(tmp_path):
     movie = read_stream(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le", tags=tags))
     assert movie.picture.coding.matrix == "BT.2020"
     assert (movie.color.primaries, movie.color.transfer) == (REC2020, "PQ")
+
+
+@pytest.mark.parametrize(("codes", "expected"), [((9, 16), (REC2020, "PQ")), ((9, 14), (REC709, ""))])
+def test_pq_in_the_container_outweighs_what_the_stream_says(tmp_path, codes, expected):
+    tags = {"colorspace": 1, "color_range": 1, "color_primaries": 1, "color_trc": 1}
+    path = write_movie(tmp_path / "a.mp4", tags=tags)
+    movie = read_stream(changed(path, b"nclx" + struct.pack(">HH", 1, 1), b"nclx" + struct.pack(">HH", *codes)))
+    assert (movie.picture.coding.matrix, movie.color.primaries, movie.color.transfer) == ("BT.709", *expected)
 
 
 @pytest.mark.parametrize(("codec", "is_interlaced"), [("huffyuv", True), ("prores_ks", False)])
