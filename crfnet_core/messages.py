@@ -75,8 +75,9 @@ SENTENCES: Mapping[str, str] = {
     "array_holds_nan": "{path}: holds NaN; replace it, or leave these rows and columns out",
     "array_is_none": "{path}: is None, which OpenCV's imread returns for a file it cannot read; check its name",
     "array_other_order": "{path}: has {channels} channels, but color_order='{order}'; give the order of all channels",
-    "array_out_of_range": "{path}: holds values from {low:.9g} to {high:.9g}; encoded brightness lies in [0, 1]: divide"
-    " code values by the largest (255 for 8 bits), or clip overshoot; a scene-linear picture holds no camera response",
+    "array_out_of_range": "{path}: holds values from {low:.17g} to {high:.17g}; encoded brightness lies in [0, 1]:"
+    " divide code values by the largest (255 for 8 bits), or clip overshoot; a scene-linear picture holds no camera"
+    " response",
     "array_sample_type": "{path}: holds {kind}; give uint8, uint16 with its bit_depth, or floating point in [0, 1]"
     " (array.astype converts); read_photo reads files",
     "array_shape": "{path}: has shape {shape}; needs (H, W), or (H, W, C) with 1 to 4 channels",

@@ -71,7 +71,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT increases, and has decimal points",
     "lut_pixels": "needed are pixels of R, G and B, shape (..., 3), found {shape}; leave alpha out",
-    "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",
+    "lut_refused": "{path}: is not read as a LUT ({reason}); write the LUT again",
     "lut_rows": "{path}: holds {rows} rows, and states {length}; write the LUT again",
     "lut_shape": "a LUT needs a row of 2 to {most} values, found shape {shape}",
     "lut_span": "the LUT spans more than {most:g}, too much to compute with in single precision",
@@ -102,7 +102,8 @@ SENTENCES: Mapping[str, str] = {
     "lut_outside_config_folder": "{name}: {lut_file!r} is not a name within the config's folder; put the LUT there",
     "lut_without_inverse_response": "{path}: {reason}",
     "nameless_color_space": "a color space needs a name, found an empty one",
-    "not_a_look": "{path}: is not the document of an estimate; give its folder, its JSON or a LUT",
+    "not_a_look": "{path}: is not the document of an estimate; give its folder, its JSON or a LUT"
+    " of it (.spi1d, .cube or .clf)",
     "role_absent": "{path}: has no role {role}; use another config",
     # pipeline: which files there are, and whether they may be written
     "empty_folder": "{path}: the folder holds no photograph ({suffixes}) outside the output folder; check the name",

@@ -5,7 +5,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageOps
+from PIL import Image, ImageFile, ImageOps
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata.jpeg import DAMAGE
@@ -29,8 +29,7 @@ def pixels_from_array(
     """Return new pixels in R, G, B, float32 (H, W, 3) in [0, 1], and the bits per sample; see `Photo.from_array`."""
     order = _stated_order(array, color_order, name)
     if isinstance(array, Image.Image):
-        with suppress(*DAMAGE):  # of its EXIF
-            array = ImageOps.exif_transpose(array)
+        array = _upright(array, name)
     values = _samples(array, name)
     order = _checked_order(values, order, name)
     bits = _checked_bits(values, bit_depth, name)
@@ -75,14 +74,27 @@ def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> C
     return order
 
 
+def _upright(image: Image.Image, name: str) -> Image.Image:
+    """Return an image of Pillow, loaded and turned as its EXIF asks; damaged EXIF turns nothing."""
+    if isinstance(image, ImageFile.ImageFile):
+        file, image.filename = image.filename, ""  # else Pillow 13 maps a turned TIFF with its sides exchanged
+        try:
+            image.load()
+        except DAMAGE as problem:
+            raise PhotoError("damaged", path=name, kind=image.format, problem=problem) from None
+        finally:
+            image.filename = file
+    with suppress(*DAMAGE):
+        image = ImageOps.exif_transpose(image)
+    return image
+
+
 def _samples(array: Any, name: str) -> NDArray[Any]:
     """Return an array of 8- or 16-bit codes or of floating-point numbers; refuse any other."""
     if array is None:
         raise PhotoError("array_is_none", path=name)
     try:
         values = np.asarray(array)
-    except OSError as problem:  # an image of Pillow may be read not before now
-        raise PhotoError("damaged", path=name, kind=array.format, problem=problem) from None
     except (RuntimeError, TypeError, ValueError):  # tensors of PyTorch with a gradient, or on another device
         raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
     if np.ma.is_masked(array):

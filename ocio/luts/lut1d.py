@@ -166,7 +166,7 @@ def inverse_response_lut(
     length : int
         Entries, 2 to 65536.
     domain : tuple of float
-        The first and the last brightness; must include [0, 1].
+        The first and the last brightness; must include [0, 1], whose entries become fewer as it becomes wider.
     comments : sequence of str
         Provenance, one line each.
 

@@ -77,7 +77,7 @@ def _checked_text(path: Path) -> str:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(READABLE))
     text = content.decode("utf-8", errors="replace")
     if OTHER_FILES.search(text.replace("\0", "")):  # in UTF-16, too
-        raise LutError("lut_refused", path=path, reason="it reads other files")
+        raise LutError("lut_refused", path=path, reason="it may name other files")
     begin = re.search(r"(?im)^.*BEGIN METADATA", text)
     if begin and not re.search(r"(?im)^[^\S\n]*END METADATA", text[begin.start() :]):
         raise LutError("lut_refused", path=path, reason="no line END METADATA")  # OpenColorIO would look for ever

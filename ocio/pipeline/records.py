@@ -108,9 +108,12 @@ class RecordFile:
             if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
                 return
             self._drop_cut_line(file)
-            file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text in a file's name
-            file.flush()
-            os.fsync(file.fileno())
+            try:
+                file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text
+                file.flush()
+                os.fsync(file.fileno())
+            except OSError as problem:
+                raise PlateError("not_written", path=self.path, reason=problem.strerror) from problem
 
     @contextmanager
     def locked(self) -> Iterator[BinaryIO]:

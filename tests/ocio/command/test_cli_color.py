@@ -194,7 +194,7 @@ class TestConfig:
         ("ACEScg", "ACEScg", "ACEScg"),
         ("ACES2065-1", "ACES2065-1", "ACES2065-1"),
         ("plate", "Linear DCI-P3 D65", "Display P3"),
-        ("scene_linear", "scene_linear", "sRGB"),
+        ("scene_linear", "Linear Rec.709", "sRGB"),
     ],
 )
 def test_the_config_finds_the_linear_plate_in_its_space(crfnet, fixed_model, plate, tmp_path, output, space, to_aces):
@@ -221,4 +221,4 @@ def test_the_config_of_many_finds_each_linear_plate(crfnet, fixed_model, plate, 
     assert crfnet("estimate", tmp_path, "--out", tmp_path / "look", *arguments).code == 0
     config = loaded(tmp_path / "look" / "config.ocio")
     found = [config.getColorSpaceFromFilepath(f"/x/{name}_linear.exr")[0] for name in "abc"]
-    assert found == ["Linear DCI-P3 D65", "Linear AdobeRGB", "scene_linear"]
+    assert found == ["Linear DCI-P3 D65", "Linear AdobeRGB", "Linear Rec.709"]
