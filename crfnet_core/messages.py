@@ -123,9 +123,9 @@ SENTENCES: Mapping[str, str] = {
     "flat_frame_advice": "give a photograph with dark and bright parts",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
     "noise_frame_advice": "give a photograph of a scene",
-    "limited_range": "limited range stored as full: the codes end at 16 and 235 of 255, which are black and white of"
-    " video",
-    "limited_range_advice": "expand the range first: when ffmpeg extracts frames, with its filter"
+    "limited_range": "probably limited range stored as full: hardly a code lies beyond 16 and 235 of 255, which are"
+    " black and white of video",
+    "limited_range_advice": "if so, expand the range first: when ffmpeg extracts frames, with its filter"
     " scale=in_range=limited:out_range=full",
     "log_footage": "log footage, or haze: black lies at code {code} of 255; by its levels the curve may be {curves}",
     "log_footage_advice": "give it the color space of the log curve that the camera was set to, which its menu or the"

@@ -155,13 +155,16 @@ class ResponseEstimate(EqualByFields):
             windows = tuple(map(_window, typed_value(document["windows"], list)))
             if (shares and abs(sum(shares) - 1) > 0.01) or any(window.photo >= len(photos) for window in windows):
                 raise ValueError("the shares of the kinds, or the photographs of the windows, are not all there")
+            band = np.array([_row(response[end], SAMPLES, least=0, most=1) for end in ("lower", "upper")])
+            if (band[0] > band[1]).any():
+                raise ValueError("the band ends below its beginning")
             return cls(
                 curve=ResponseCurve(_row(response["brightness"], SAMPLES, least=0, most=1)),
                 weights=_row(document["weights"], COMPONENTS),
                 windows=windows,
                 uncertainty=_number(document["uncertainty"]),
                 shape_uncertainty=_number(document["shape_uncertainty_stops"]),
-                band=np.array([_row(response[end], SAMPLES, least=0, most=1) for end in ("lower", "upper")]),
+                band=band,
                 families=dict(zip(map(Family, families), shares, strict=True)),
                 verdict=Verdict(document["verdict"]),
                 prior=typed_value(document["prior"], str),

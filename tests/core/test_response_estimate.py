@@ -96,6 +96,7 @@ DAMAGES: dict[str, tuple[object, ...]] = {
     **dict.fromkeys(("windows.0.photo", "windows.0.x", "windows.0.weights"), (-1, 1.5, "1", None)),
     **{"windows.0.filled": (257, -1), "windows.0.step": (0,)},
     **{"windows.0.kept": (1,), "windows.0.expected_error": (-1,)},
+    "response.lower": ([1.0] * 1024,),  # above the upper end
     **dict.fromkeys(("response.brightness", "response.upper"), (None, [0.5] * 7, [2.0] * 1024, ["0.5"] * 1024)),
 }
 

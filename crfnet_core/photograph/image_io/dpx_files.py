@@ -30,7 +30,7 @@ def check_dpx(path: Path, header: Any) -> None:
     is_padded = line % 4 and stored == (line + -line % 4) * header.height
     has_read_element = descriptor in (_RGB if elements > 1 else _READ)  # the first one alone is read
     problems = {
-        "lines from top to bottom": header.get_int_attribute("Orientation", 1) > 4,  # taken for lines of another length
+        "turned by a quarter": header.get_int_attribute("Orientation", 1) > 4,  # taken for lines of another length
         f"{elements} elements, the first of descriptor {descriptor}": not has_read_element,
         "runs": any(encoding),
         "its header does not state where the pixels are": place in _NO_PLACES,
