@@ -8,6 +8,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
 
 from ..messages import NOT_TEXT
 from .arguments.command_line import build_parser
@@ -79,7 +80,9 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
     from crfnet_core.errors import CRFNetError
 
     try:
-        "".join(argv).encode()  # refuses file names that are not valid Unicode
+        given = vars(arguments)
+        alone = set(map(Path, given.get("photos", given.get("plates", ())))) if given.get("each") else set()
+        "".join(text for text in argv if Path(text) not in alone).encode()  # refuses names that are not valid Unicode
         code = import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError, RuntimeError) as problem:

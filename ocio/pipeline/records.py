@@ -115,6 +115,12 @@ class RecordFile:
             except OSError as problem:
                 raise PlateError("not_written", path=self.path, reason=problem.strerror) from problem
 
+    def mend(self) -> None:
+        """Remove what a killed run has written of its last line."""
+        if self.path.exists():
+            with self.locked() as file:
+                self._drop_cut_line(file)
+
     @contextmanager
     def locked(self) -> Iterator[BinaryIO]:
         """Open the file for appending, with no other process in such a block meanwhile."""

@@ -65,6 +65,7 @@ def run_batch(
     records = batch.records.read()
     tasks = plan_tasks(batch, photographs, records)
     with output_folder(batch.out):
+        batch.records.mend()
         known = [] if batch.plates.overwrite else [_known(task, records.get(task.place)) for task in tasks]
         ended = {record.place: record for record in known if record}
         todo = {task.place: task for task in tasks if task.place not in ended}

@@ -8,6 +8,7 @@ from ...configs.derived import write_derived_config
 from ...configs.looks import read_looks
 from ...configs.plate_color_space import PlateInConfig, plates_in_config
 from ...configs.sources import find_config
+from ...luts.rgb_lut import lut_identity
 from .printing import lost_lines, print_result
 
 
@@ -18,7 +19,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _add(arguments: argparse.Namespace) -> None:
     paths = dict.fromkeys(path.resolve() for path in arguments.looks)
-    looks = [look for path in paths for look in read_looks(path)]
+    read = [look for path in paths for look in read_looks(path)]
+    looks = list({(look.folder, look.space, lut_identity(look.lut)): look for look in read}.values())  # each once
     base = find_config(arguments.base)
     derived = write_derived_config(base, arguments.out, looks, overwrite=arguments.overwrite)
     plates = [asdict(plate) for plate in derived.plates]

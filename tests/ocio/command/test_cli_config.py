@@ -31,10 +31,11 @@ def test_an_estimate_goes_into_a_copy_of_a_studios_config(crfnet, look, plate, o
 
 
 def test_add_and_list(crfnet, folder, tmp_path):
-    assert crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "show", folder, folder / ".").code == 0
+    others = (folder / ".", folder / "plate01.json", folder / "plate01.spi1d")  # the same once more
+    assert crfnet("config", "add", "--base", STUDIO, "--out", tmp_path / "show", folder, *others).code == 0
     assert crfnet("config", "list", tmp_path / "show").out.splitlines()[0] == f"{NAME}: plate01.spi1d, +1 stops"
     document = json.loads(crfnet("config", "list", tmp_path / "show", "--json").out)
-    assert [plate["exposure"] for plate in document["plates"]] == [1]
+    assert [plate["exposure"] for plate in document["plates"]] == [1], "one plate"
     assert list(document["plates"][0]["rules"].values()) == [NAME, "Linear Rec.709 (sRGB)"]
     assert crfnet("config", "list", STUDIO).out == f"ocio://{STUDIO}: has no plates\n"
 

@@ -17,7 +17,7 @@ from crfnet.defaults import ESTIMATES
 from crfnet.errors import PlateError
 from crfnet.pipeline import batch, each, run, workers
 from crfnet.pipeline.records import PhotographRecord, RecordFile
-from tests.helpers.folders import listed, tree
+from tests.helpers.folders import listed, tree, written
 from tests.helpers.footage import log_picture, write_picture
 from tests.helpers.processes import start_interruptible
 from tests.helpers.records import plates_in, records_in
@@ -142,6 +142,14 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
         with refused(PlateError, "not_records"):
             RecordFile(out / ESTIMATES).append(PhotographRecord(photograph="a.jpg", place="a.jpg"))
     assert tree(out) == {ESTIMATES: text.encode()}
+
+
+def test_a_cut_line_goes_also_where_nothing_is_left_to_do(estimate, photographs, out):
+    assert estimate(photographs, *QUICK).code == 0
+    whole = (out / ESTIMATES).read_bytes()
+    written(out / ESTIMATES, whole + whole[:50])
+    assert estimate(photographs, *QUICK).code == 0
+    assert (out / ESTIMATES).read_bytes() == whole
 
 
 @pytest.mark.parametrize("text", ["", '{"photograph": "a'])

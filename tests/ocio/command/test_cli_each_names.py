@@ -75,8 +75,8 @@ def test_a_photograph_is_known_by_its_place_wherever_the_command_runs(crfnet, lo
 def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
     for name in (b"\xff.jpg", b"\xfe.jpg", b"a\xff.jpg"):
         shutil.copy(photographs / "a.jpg", photographs / os.fsdecode(name))
-    for _ in range(2):
-        assert estimate(photographs, *QUICK).refusal == "photographs_failed"
+    for names in ([photographs], [photographs], sorted(photographs.glob("*.[jJ]*"))):
+        assert estimate(*names, *QUICK).refusal == "photographs_failed"
         errors = {record["photograph"]: record["error"] for record in records_in(tmp_path / "out")}
         assert [bool(errors[name]) for name in sorted(errors)] == [True, True, False, True, False, False]
         assert errors[f"{photographs}/\\udcff.jpg"].startswith(f"{photographs}/?.jpg: ")
