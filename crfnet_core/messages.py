@@ -112,6 +112,7 @@ SENTENCES: Mapping[str, str] = {
     "sample_type": "{path}: holds {bits}-bit {kind} samples; needs 8 to 16 bits, unsigned: convert it",
     "scene_linear_file": "{path}: {kind} holds scene-linear values, in which no camera response is left to estimate;"
     " give the JPEG, HEIC or TIFF that the camera or the raw developer wrote",
+    "stream_at_end": "{path}: nothing is left to read from where the file stands; seek to its beginning",
     "too_many_pixels": "{path}: claims {width} x {height} pixels; at most {megapixels} megapixels are read: crop it",
     "volume": "{path}: holds a volume; give a flat photograph",
     # photograph: recognition

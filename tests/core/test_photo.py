@@ -176,6 +176,7 @@ def test_the_name_of_an_open_file_is_a_name_only(tmp_path, name):
     file = io.BytesIO(write_image(tmp_path / "a.png", CODES8).read_bytes())
     file.name = name
     np.testing.assert_array_equal(read_photo(file).pixels, read_photo(tmp_path / "a.png").pixels)
+    assert refusal_of(PhotoError, read_photo, file).code == "stream_at_end"
 
 
 @pytest.mark.parametrize("problem", [OSError(5, "damaged"), ValueError("of closed file"), TypeError("no name")])

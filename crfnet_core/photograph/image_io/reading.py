@@ -77,6 +77,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
             content = source.read()
         except (OSError, TypeError, ValueError) as problem:  # closed files are a ValueError, archives a TypeError
             raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
+        if not content:
+            raise PhotoError("stream_at_end", path=path)
     if not isinstance(content, bytes | bytearray | memoryview):
         raise PhotoError("photograph_source", kind=type(source).__name__)
     return Photo.from_codes(read_content(bytes(content), path), path)

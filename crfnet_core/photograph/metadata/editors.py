@@ -24,6 +24,7 @@ EDITORS = (
     *("irfanview", "xnview", "faststone", "picasa", "iphoto", "photos ", "digikam", "shotwell", "gthumb", "filmpack"),
     *("windows photo", "windows live photo", "microsoft photo", "photodirector", "movavi", "ashampoo", "magix"),
     *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
+    *("siril", "pixinsight"),  # of astronomers
     # HDR merging and panoramas
     *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
     *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
