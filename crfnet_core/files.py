@@ -110,6 +110,12 @@ def escaped_name(path: str | Path) -> str:
     return str(path).encode(errors="backslashreplace").decode()
 
 
+def check_utf8(path: Path, error: type[CRFNetError]) -> None:
+    """Raise `error` unless a path in full, with the current folder, is UTF-8, as OpenColorIO needs it."""
+    if (name := escaped_name(path.absolute())) != str(path.absolute()):
+        raise error("name_not_utf8", path=name)
+
+
 def cut_to_bytes(name: str, most: int) -> str:
     """Return a file's name cut to at most `most` bytes, between two characters; other bytes are left out."""
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")

@@ -96,6 +96,8 @@ SENTENCES: Mapping[str, str] = {
     "config_variables": "{path}: declares more than {most} variables, or some that multiply; write their values out",
     "config_without_rec709": "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one"
     " of them",
+    "exposure_in_version_1": "{name}: configs of profile version 1 hold no exposure, here of {exposure:+g} stops;"
+    " estimate the plate with none, or use a base of version 2",
     "exposure_not_finite": "{name}: the exposure is {exposure}; give at most {most} stops up or down",
     "folder_without_look": "{path}: holds no estimate; give the folder, the JSON or a LUT of one",
     "lut_name_is_variable": "{name}: OpenColorIO takes $ and % in {lut_file!r} for variables; rename it",

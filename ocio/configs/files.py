@@ -10,7 +10,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import NDArray
 
-from crfnet_core.files import atomic_write, read_bytes
+from crfnet_core.files import atomic_write, check_utf8, read_bytes
 from crfnet_core.types import Float32Array
 
 from ..errors import ConfigError
@@ -50,6 +50,7 @@ def load_config(path: str | Path) -> OCIO.Config:
     path = Path(path)
     if not os.path.lexists(path):
         raise ConfigError("no_such_file", path=path)
+    check_utf8(path, ConfigError)
     try:
         text = read_bytes(path, most=MAX_CONFIG_SIZE).decode().replace("\0", "")  # of UTF-16
         anchors = set(re.findall(_ANCHOR, text))

@@ -136,7 +136,9 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
     """Return the LUT, the exposure, and the matrices from the plate's primaries to the reference space."""
     file_name = space.lut_file.replace("\\", "/")
     steps: list[OCIO.Transform] = [OCIO.FileTransform(src=file_name, interpolation=OCIO.INTERP_LINEAR)]
-    if space.exposure or config.getMajorVersion() >= 2:  # profile version 1 does not know this transform
+    if config.getMajorVersion() < 2 and space.exposure:
+        raise ConfigError("exposure_in_version_1", name=space.name, exposure=space.exposure)
+    if config.getMajorVersion() >= 2:
         steps.append(OCIO.ExposureContrastTransform(OCIO.EXPOSURE_CONTRAST_LINEAR, exposure=space.exposure))
     if space.primaries != REC709:
         steps.append(matrix_transform(conversion_matrix(space.primaries, REC709)))

@@ -7,7 +7,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import check_kinds, one_line
-from crfnet_core.files import read_bytes
+from crfnet_core.files import check_utf8, read_bytes
 from crfnet_core.types import Float64Array
 
 from ..errors import LutError
@@ -86,6 +86,7 @@ def _checked_text(path: Path) -> str:
 
 def _processor(path: Path) -> OCIO.Processor:
     """Return OpenColorIO's processor of a file, or raise a LutError with its reason."""
+    check_utf8(path, LutError)
     OCIO.ClearAllCaches()
     context = OCIO.Context()
     context.setEnvironmentMode(OCIO.ENV_ENVIRONMENT_LOAD_PREDEFINED)  # a $ in a file's name is not a variable

@@ -66,7 +66,8 @@ def test_the_makers_name_is_said_once(make, model, name):
 
 EDITORS = (
     *("Adobe Photoshop CS6 (Windows)", "Capture One 20 Windows", "DxO PhotoLab 4.0", "easyHDR 3.13", "GIMP 2.10.8"),
-    *("Google", "Photos 3.0", "SIGMA Photo Pro 5.5", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2", "Siril 1.2"),
+    *("Google", "Photos 3.0", "SIGMA Photo Pro 5.5", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
+    "Siril 1.2.4",
 )
 
 #: Firmware, and a viewer.

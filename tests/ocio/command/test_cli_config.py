@@ -1,5 +1,7 @@
 import json
+import os
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -59,6 +61,15 @@ def test_a_base_of_profile_1_is_said_to_have_no_rules(crfnet, tmp_path):
     look = write_look(tmp_path / "look")
     done = crfnet("config", "add", "--base", tmp_path / "base.ocio", "--out", tmp_path / "show", look)
     assert done.out.endswith("plate01.jpg no space of its own: its base, of profile version 1, has no file rules\n")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+@pytest.mark.parametrize("line", ["info plate01.spi1d", "config list config.ocio", "config add --base . --out x ."])
+def test_a_current_folder_whose_name_is_not_unicode_is_named(crfnet, folder, tmp_path, monkeypatch, line):
+    shutil.copytree(folder, tmp_path / os.fsdecode(b"\xff"))
+    monkeypatch.chdir(tmp_path / os.fsdecode(b"\xff"))
+    done = crfnet(*line.split())
+    assert (done.refusal, "\\udcff" in done.err) == ("name_not_utf8", True)
 
 
 def test_plates_that_a_replaced_config_no_longer_has_are_named(crfnet, folder, tmp_path):

@@ -167,6 +167,8 @@ class TestBase:
         names = ("plate01_linear.exr", "plate01.jpg")
         assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, names)
         assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
+        bright = write_look(tmp_path / "bright", exposure=1)
+        assert refusal_of(ConfigError, add, studio, tmp_path / "other", bright).code == "exposure_in_version_1"
 
     @pytest.mark.parametrize("taken", [NAME, "crf_plate01"])
     @pytest.mark.parametrize("owner", ["hidden", "named transform", "alias of a named transform", "file rule"])
