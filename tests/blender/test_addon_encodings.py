@@ -52,7 +52,7 @@ def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, t
     image.camera_response_settings.apply = "NODES"
     drawn = drawn_in(image, in_editor)
     before_the_filter = drawn[: drawn.index(("operator", "wm.context_set_string", "Copy the Filter", "COPYDOWN"))]
-    cause, remedy = "Limited range stored as full:", "Expand the range first:"
+    cause, remedy = "Probably limited range stored as full:", "If so, expand the range first:"
     assert re.match(f"Do not trust {cause} .* {remedy} .*", " ".join(labels(before_the_filter)))
     assert cause not in " ".join(labels(drawn[len(before_the_filter) :]))  # once
     assert ("set", "value", "scale=in_range=limited:out_range=full") in drawn
