@@ -26,11 +26,12 @@ _START, _HEAD = re.compile(rb"(\A|jxlc|jxlp.{4})\xff\x0a", re.DOTALL), 4096
 
 @dataclass(frozen=True)
 class JxlHeader:
-    """The fields of a codestream's header that are used; these are the default ones."""
+    """The fields of a codestream's header that are used, with their defaults; and whether boxes hide metadata."""
 
     orientation: int = 1
     bits: int = 8  # per sample
     is_xyb: bool = True  # else the codes of the picture's own color space are stored
+    is_unread: bool = False  # whether EXIF or XMP is compressed, and so not read
 
 
 def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
@@ -50,20 +51,15 @@ def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
     return header
 
 
-def has_compressed_metadata(path: Path) -> bool:
-    """Return whether EXIF or XMP is compressed, and so not read."""
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        return bool(_COMPRESSED.search(content))
-
-
 def jxl_header(path: Path) -> JxlHeader:
     """Return the header of the codestream; refuse a preview, and an animation, whose last frame OpenImageIO returns."""
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         start = _START.search(content)
         fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
+        is_unread = bool(_COMPRESSED.search(content))
     fields.skip_sides()
     if fields.number():  # all are the default ones
-        return JxlHeader()
+        return JxlHeader(is_unread=is_unread)
     orientation = 1
     if fields.number():
         orientation += fields.number(3)
@@ -81,7 +77,7 @@ def jxl_header(path: Path) -> JxlHeader:
             fields.choice((0, 0), (3, 0), (4, 0), (1, 3))  # fewer samples
             fields.number(8 * fields.choice((0, 0), (0, 4), (16, 5), (48, 10)))  # its name
             fields.number(is_alpha)  # whether the colors are multiplied by it
-    return JxlHeader(orientation, bits, is_xyb=bool(fields.number()))
+    return JxlHeader(orientation, bits, is_xyb=bool(fields.number()), is_unread=is_unread)
 
 
 @dataclass

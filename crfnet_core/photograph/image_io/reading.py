@@ -27,7 +27,7 @@ from crfnet_core.photograph.image_io.header_checks import (
 )
 from crfnet_core.photograph.image_io.jp2_files import with_jp2_boxes
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
-from crfnet_core.photograph.image_io.jxl_files import JxlHeader, has_compressed_metadata, jxl_header, with_jxl_boxes
+from crfnet_core.photograph.image_io.jxl_files import JxlHeader, jxl_header, with_jxl_boxes
 from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
@@ -213,8 +213,8 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
                     yield replace(file, path=path, has_gain_map=True)
         else:
             header = with_color_chunks(header, path) if kind == "PNG" else header
-            is_unread = kind == "JPEG XL" and has_compressed_metadata(path)
-            yield _OpenFile(path, kind, source, header, jpeg, is_turned=jxl.orientation > 1, is_unread=is_unread)
+            is_turned, is_unread = jxl.orientation > 1, jxl.is_unread
+            yield _OpenFile(path, kind, source, header, jpeg, is_turned=is_turned, is_unread=is_unread)
     finally:
         source.close()
 
