@@ -66,7 +66,7 @@ class ResponseNetwork:
         `progress` is called with (done, total) after every window. Raise ModelError if the network fails, or answers
         with numbers that are not finite or of another shape than evidence.
         """
-        if self.config.input_name == "statistics":
+        if self.config.reads_statistics:
             # one thread, as numpy's small steps wait for each other's interpreter lock (two take a quarter longer), and
             # one window at a time, as that fits into a core's cache
             rows = _counted(map(window_statistics, windows), len(windows), progress)

@@ -70,6 +70,11 @@ class ModelConfig:
         atomic_write_text(path, json.dumps(asdict(self), indent=2) + "\n", overwrite=True, error=ModelError)
 
     @property
+    def reads_statistics(self) -> bool:
+        """Whether the network reads the statistics of windows rather than their samples."""
+        return self.input_name == "statistics"
+
+    @property
     def label(self) -> str:
         """The model's name and the head of its hash, for provenance."""
         return f"{self.name} {self.sha256[:12]}"

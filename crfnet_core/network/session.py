@@ -80,7 +80,7 @@ def _options(config: ModelConfig) -> Any:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     options.log_severity_level = _FATAL
-    if config.input_name == "statistics":  # to optimize two thousand small operators takes longer than it saves
+    if config.reads_statistics:  # to optimize two thousand small operators takes longer than it saves
         options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     options.add_session_config_entry("session.load_model_format", "ONNX")  # not what its first bytes call it
     options.add_session_config_entry("session.use_env_allocators", "1")  # of bounded memory
