@@ -97,8 +97,8 @@ def add_file_rules(config: OCIO.Config, claims: Sequence[FileClaim]) -> tuple[st
     shared = _shared_patterns([*earlier.values(), *claims])
     losing = {index: claim for index, claim in earlier.items() if claim.space and not shared.isdisjoint(claim.patterns)}
     lost = {each.lower(): each for claim in (*losing.values(), *claims) for each in claim.patterns if each in shared}
-    for claim in claims[:1]:  # a rule of one plate is enough
-        _insert(rules, last, plate_of_rule(claim.rule) + SHARED, rules.getColorSpace(last), list(lost.values()))
+    if claims:  # a rule of one plate is enough
+        _insert(rules, last, plate_of_rule(claims[0].rule) + SHARED, rules.getColorSpace(last), list(lost.values()))
     for index, claim in losing.items():
         rules.removeRule(index)
         _insert(rules, index, claim.rule, claim.space, [each for each in claim.patterns if each not in shared])
@@ -131,11 +131,13 @@ def _insert(rules: OCIO.FileRules, index: int, name: str, space: str, patterns: 
 def _claim(config: OCIO.Config, rules: OCIO.FileRules, index: int) -> FileClaim | None:
     """Return what a plate's rule claims; None if a rule is another's, or somebody has changed its expression."""
     name, regex = rules.getName(index), rules.getRegex(index)
-    plate, patterns = config.getColorSpace(plate_of_rule(name)), _patterns(regex)
-    is_same = rule_regex(patterns).replace("-?", "") == regex.replace("-?", "")  # earlier, no frames were below 0
-    if plate and plate.getFamily() == FAMILY and is_same:
-        return FileClaim(name, "" if SHARED in name else rules.getColorSpace(index), patterns)
-    return None
+    plate = config.getColorSpace(plate_of_rule(name))
+    if not plate or plate.getFamily() != FAMILY:
+        return None
+    patterns = _patterns(regex)
+    if rule_regex(patterns).replace("-?", "") != regex.replace("-?", ""):  # earlier, no frames were below 0
+        return None
+    return FileClaim(name, "" if SHARED in name else rules.getColorSpace(index), patterns)
 
 
 def _patterns(regex: str) -> tuple[str, ...]:

@@ -93,7 +93,7 @@ def _processor(path: Path) -> OCIO.Processor:
     transform = OCIO.FileTransform(src=str(path.absolute()), interpolation=OCIO.INTERP_LINEAR)
     try:
         return OCIO.Config.CreateRaw().getProcessor(context, transform, OCIO.TRANSFORM_DIR_FORWARD)
-    except UnicodeError:  # OpenColorIO's message quotes the file, or the name is not text
+    except UnicodeError:  # OpenColorIO's message quotes the file
         raise LutError("lut_refused", path=path, reason="not a text") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         reason = one_line(problem).rpartition(" failed with: ")[2].replace(str(path.absolute()), path.name)
