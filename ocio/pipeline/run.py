@@ -71,7 +71,7 @@ def run_batch(
         todo = {task.place: task for task in tasks if task.place not in ended}
         show_progress(progress, len(ended), len(tasks))
         for record in _ended([*todo.values()], workers or cores(), scheduler):
-            batch.records.append(record, files=todo[record.place].existing)
+            batch.records.append(record, files=todo[record.place].existing if record.error else ())
             ended[record.place] = record
             show_progress(progress, len(ended), len(tasks))
     return batch.finished([ended[task.place] for task in tasks])

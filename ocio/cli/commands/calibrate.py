@@ -10,7 +10,7 @@ from ...options import OutputOptions
 from ...report.calibration import Measured, calibration_lines, comparison_lines
 from ...report.words import file_lines
 from ..remedies import CommandError
-from .printing import lost_lines, prepare_matplotlib, print_result, progress_bar
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> None:
         *file_lines(plan.files, sheet="the curve, the points of every file and their residuals"),
         *lost_lines(plan.files.config, lost),
     ]
-    print_result(document | ({"dropped": lost} if lost else {}), lines, as_json=arguments.json)
+    print_result(document | lost_document(lost), lines, as_json=arguments.json)
 
 
 def _measured(arguments: argparse.Namespace) -> Measured:

@@ -9,7 +9,7 @@ from ...configs.looks import read_looks
 from ...configs.plate_color_space import PlateInConfig, plates_in_config
 from ...configs.sources import find_config
 from ...luts.rgb_lut import lut_identity
-from .printing import lost_lines, print_result
+from .printing import lost_document, lost_lines, print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -18,20 +18,19 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _add(arguments: argparse.Namespace) -> None:
-    paths = dict.fromkeys(path.resolve() for path in arguments.looks)
-    read = [look for path in paths for look in read_looks(path)]
+    read = [look for path in arguments.looks for look in read_looks(path)]
     looks = list({(look.folder, look.space, lut_identity(look.lut)): look for look in read}.values())  # each once
     base = find_config(arguments.base)
     derived = write_derived_config(base, arguments.out, looks, overwrite=arguments.overwrite)
     plates = [asdict(plate) for plate in derived.plates]
     document = {"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)}
-    document |= {"dropped": list(derived.dropped)} if derived.dropped else {}
     reason = "many cameras give such names, several plates have it, or the config has no space for it"
-    reason = reason if base.config.getMajorVersion() >= 2 else "its base, of profile version 1, has no file rules"
+    if base.config.getMajorVersion() < 2:
+        reason = "its base, of profile version 1, has no file rules"
     notes = [f"note: file rules give {pattern} no space of its own: {reason}" for pattern in derived.without_rule]
     notes += lost_lines(derived.path, derived.dropped)
     lines = [f"Written: {derived.path}", *_plate_lines(derived.plates), *notes]
-    print_result(document, lines, as_json=arguments.json)
+    print_result(document | lost_document(derived.dropped), lines, as_json=arguments.json)
 
 
 def _list(arguments: argparse.Namespace) -> None:

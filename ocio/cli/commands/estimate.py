@@ -13,7 +13,7 @@ from ...options import OutputOptions
 from ...report import words
 from ..arguments.parts import NOT_TRUSTED
 from .each import check_each, estimate_options, plate_options, run_each
-from .printing import lost_lines, prepare_matplotlib, print_result, progress_bar
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -45,7 +45,7 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
         estimated = pipeline.estimate_files(sources, options, progress=progress)
     light = pipeline.estimated_light(estimated, plan.plates)
     document, lost = pipeline.deliver_estimate(plan, estimated, light)
-    printed = {"folder": str(arguments.out), "estimates": [document], **({"dropped": lost} if lost else {})}
+    printed = {"folder": str(arguments.out), "estimates": [document], **lost_document(lost)}
     lines = [*_lines(estimated, document, plan), *lost_lines(plan.files.config, lost)]
     print_result(printed, lines, as_json=arguments.json)
     return estimated.estimate.verdict

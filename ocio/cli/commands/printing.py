@@ -64,8 +64,13 @@ def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: 
         sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
+def lost_document(names: Sequence[str]) -> dict[str, Any]:
+    """Return the names of plates that a replaced config has no more, for JSON; empty without any."""
+    return {"dropped": list(names)} if names else {}
+
+
 def lost_lines(config: Path, names: Sequence[str]) -> list[str]:
-    """Return a warning of plates that a replaced config has no more, with the command that brings them back."""
+    """Return a warning of these plates, with the command that brings them back."""
     if not names:
         return []
     which = f'"{names[0]}"' + f" and {len(names) - 1} more" * bool(names[1:])
