@@ -65,7 +65,7 @@ def linear_patterns(
 
 def example(pattern: str) -> str:
     """Return a name that a pattern stands for."""
-    return re.sub(r"\[([#*?\\])\]|[*#]", lambda match: match[1] or "0001", pattern)
+    return re.sub(r"\[(#)\]|#", lambda match: match[1] or "0001", pattern)
 
 
 def is_counter_name(pattern: str) -> bool:
@@ -78,9 +78,8 @@ def is_counter_name(pattern: str) -> bool:
 def rule_regex(patterns: Iterable[str]) -> str:
     """Return the regular expression of file names, in a syntax that every host shares.
 
-    In the patterns, `*` stands for any characters, `?` for any character, `#` for a number of any length, also below 0
-    behind a dot, and `[#]` for the character itself; none of them matches a separator of folders. A pattern holds for
-    full names, in any folder, in upper and lower case.
+    In the patterns, `#` stands for a number of any length, also below 0 behind a dot, and `[#]` for the character
+    itself. A pattern holds for full names, in any folder, in upper and lower case.
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
@@ -177,9 +176,9 @@ def _have_common(one: str, other: str) -> bool:
 
 def _pattern_regex(pattern: str) -> str:
     """Return the regular expression of one pattern."""
-    wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", ".#": r"\.-?[0-9]+", "\\": r"[/\\]"}
-    parts = re.findall(r"\[[#*?\\]\]|\.#|.", pattern, re.DOTALL)  # [#] is the character itself
-    return "".join(wildcards.get(part) or _letter_regex(part.strip("[]") or part) for part in parts)
+    special = {"#": r"[0-9]+", ".#": r"\.-?[0-9]+", "[#]": "#"}
+    parts = re.findall(r"\[#\]|\.#|.", pattern, re.DOTALL)
+    return "".join(special.get(part) or _letter_regex(part) for part in parts)
 
 
 def _letter_regex(letter: str) -> str:

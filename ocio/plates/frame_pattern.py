@@ -72,5 +72,5 @@ def _width(mark: str) -> int:
 
 
 def literal(name: str) -> str:
-    """Return a name as a part of the pattern of a file rule, in which its characters stand for themselves."""
-    return re.sub(r"[#*?\\]", r"[\g<0>]", name)
+    """Return a name as a part of the pattern of a file rule, in which `[#]` stands for the character `#`."""
+    return name.replace("#", "[#]")

@@ -62,7 +62,7 @@ def test_its_displays_show_white_as_white(display):
     ],
 )
 def test_files_find_their_space_by_rules(path, space):
-    plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_patterns=("shot_plate01.????.png",))
+    plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_patterns=("shot_plate01.#.png",))
     assert portable_config([plate]).getColorSpaceFromFilepath(path)[0] == space
 
 
