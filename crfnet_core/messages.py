@@ -69,7 +69,8 @@ SENTENCES: Mapping[str, str] = {
     # photograph: arrays
     "array_above_bit_depth": "{path}: holds code {code}, but bit_depth={bit_depth} ends at {largest}; give its own"
     " bit_depth",
-    "array_bit_depth": "{path}: {kind} cannot hold a photograph of bit_depth={bit_depth}; give 8 to {most}",
+    "array_bit_depth": "{path}: {kind} cannot hold a photograph of bit_depth={bit_depth}; give a whole number from"
+    " 8 to {most}",
     "array_channels_first": "{path}: has shape {shape}; needs (H, W), or (H, W, C) with 1 to 4 channels: where channels"
     " come first, give array.transpose(1, 2, 0)",
     "array_holds_nan": "{path}: holds NaN; replace it, or leave these rows and columns out",
@@ -87,6 +88,7 @@ SENTENCES: Mapping[str, str] = {
     " order), 'RGBA', 'BGRA' or 'LA'",
     "photo_pixels": "{path}: the pixels are {kind}, shape {shape}; a Photo holds float32 of shape (H, W, 3):"
     " Photo.from_array converts",
+    "pillow_closed": "{path}: the Pillow image is closed; give it open, or its array",
     "pillow_mode": "{path}: is a Pillow image of mode '{mode}', which is not taken; give the RGB photograph that it was"
     " made from, or its codes of 8 or 16 bits as an array",
     "pillow_order_stated": "{path}: is a Pillow image of mode '{mode}', so leave color_order='{order}' out",
@@ -110,8 +112,8 @@ SENTENCES: Mapping[str, str] = {
     "raw_not_read": "{path}: LibRaw cannot read this {suffix} file ({problem}); convert it to DNG, or copy it again",
     "rawpy_missing": "{path}: camera raw is read by rawpy, and measured with SciPy: pip install 'crfnet[calibrate]'",
     "sample_type": "{path}: holds {bits}-bit {kind} samples; needs 8 to 16 bits, unsigned: convert it",
-    "scene_linear_file": "{path}: {kind} holds scene-linear values, in which no camera response is left to estimate;"
-    " give the JPEG, HEIC or TIFF that the camera or the raw developer wrote",
+    "scene_linear_file": "{path}: no response is estimated from {kind}, whose values are scene-linear as a rule; give"
+    " the JPEG, HEIC or TIFF that the camera or the raw developer wrote",
     "stream_at_end": "{path}: nothing is left to read from where the file stands; seek to its beginning",
     "too_many_pixels": "{path}: claims {width} x {height} pixels; at most {megapixels} megapixels are read: crop it",
     "volume": "{path}: holds a volume; give a flat photograph",
@@ -147,6 +149,8 @@ SENTENCES: Mapping[str, str] = {
     " so give the plate its color space, and no estimate; if the tag is wrong, ignore metadata",
     "tagged_linear": "{path}: is linear already: so says its metadata ({source}). Give it a linear color space; if the"
     " tag is wrong, ignore metadata",
+    "thermal": "a picture by {camera}, a thermal camera: mostly colors that stand for temperatures",
+    "thermal_advice": "give a photograph of light; if this is one, state what took it",
     # estimate: errors
     "argument_kind": "{name} is a {found}; give a {needed}",
     "bad_option": "the option {name}: {problem}",

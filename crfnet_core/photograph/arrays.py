@@ -76,14 +76,18 @@ def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> C
 
 def _upright(image: Image.Image, name: str) -> Image.Image:
     """Return an image of Pillow, loaded and turned as its EXIF asks; damaged EXIF turns nothing."""
-    if isinstance(image, ImageFile.ImageFile):
-        file, image.filename = image.filename, ""  # else Pillow 13 maps a turned TIFF with its sides exchanged
-        try:
-            image.load()
-        except DAMAGE as problem:
-            raise PhotoError("damaged", path=name, kind=image.format, problem=problem) from None
-        finally:
-            image.filename = file
+    file = image if isinstance(image, ImageFile.ImageFile) else None
+    if file:
+        path, file.filename = file.filename, ""  # else Pillow 13 maps a turned TIFF with its sides exchanged
+    try:
+        image.load()
+    except (AssertionError, *DAMAGE) as problem:
+        if isinstance(problem, AssertionError) or "closed" in str(problem):
+            raise PhotoError("pillow_closed", path=name) from None
+        raise PhotoError("damaged", path=name, kind=image.format, problem=problem) from None
+    finally:
+        if file:
+            file.filename = path
     with suppress(*DAMAGE):
         image = ImageOps.exif_transpose(image)
     return image
@@ -126,5 +130,5 @@ def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int
         raise PhotoError("array_without_bit_depth", path=name)
     bit_depth = bits if bit_depth is None else bit_depth
     if not is_number(bit_depth, int, least=LEAST_BITS, most=bits):
-        raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
+        raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=repr(bit_depth), most=bits)
     return int(bit_depth)  # an np.uint8 cannot hold 2 ** 16

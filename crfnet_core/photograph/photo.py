@@ -57,6 +57,7 @@ class Photo:
             if kind != np.float32 or shape[2:] != (3,) or not pixels.size:
                 raise PhotoError("photo_pixels", path=path, kind=kind, shape=shape)
             check_range(pixels, str(path))
+            pixels = _read_only(pixels)
         self._samples = pixels
 
     @classmethod
@@ -111,8 +112,8 @@ class Photo:
 
     @cached_property
     def pixels(self) -> Float32Array:
-        """The pixels, float32, shape (H, W, 3), in [0, 1]."""
-        return self[()]
+        """The pixels, float32, shape (H, W, 3), in [0, 1]; read-only."""
+        return _read_only(self[()])
 
     def __getitem__(self, index: Any) -> Float32Array:
         """Return some of the pixels: `pixels[index]`, for an index of rows and columns."""
@@ -169,6 +170,13 @@ class CodeValues:
         pixels = np.zeros(codes.shape, np.float32)
         np.divide(codes, alpha, out=pixels, where=alpha > 0, dtype=np.float32)
         return np.asarray(np.minimum(pixels, 1, out=pixels))
+
+
+def _read_only(pixels: Float32Array) -> Float32Array:
+    """Return a view of pixels that does not let them be changed, as nobody would check them again."""
+    view = pixels.view()
+    view.flags.writeable = False
+    return view
 
 
 def upright(pixels: NDArray[Any], turn: Turn) -> NDArray[Any]:

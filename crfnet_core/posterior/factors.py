@@ -26,6 +26,8 @@ FACTORS: dict[str, tuple[float, ...]] = {
     Device.CAMERA: (0.03, 0.1, 1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
     Device.SCANNER: (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    # The colors of thermal cameras stand for temperatures.
+    Device.THERMAL: (0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 1),
     # The user states the device, whatever became of the picture: log footage, raw files and graded pictures are taken
     # with cameras, too, screenshots and renderings are not. A scan is the same, whoever states the scanner.
     "stated phone": (1, 0.03, 0.03, 0.3, 1, 0.05, 1, 1, 0.5),
@@ -33,6 +35,7 @@ FACTORS: dict[str, tuple[float, ...]] = {
     "stated camera": (0.03, 0.1, 1, 1, 1, 0.05, 1, 1, 0.5),
     "stated other": (1, 1, 1, 1, 1, 0.3, 1, 1, 0.5),
     "stated scanner": (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    "stated thermal camera": (0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 1),
     # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
     # data, renderings and screenshots never had it.
     "no camera": (0.2, 0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),

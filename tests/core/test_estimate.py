@@ -198,9 +198,9 @@ def test_a_photograph_is_warned_of_once(fields, codes):
 
 @pytest.mark.parametrize("end", [0, 1])
 def test_a_clipped_photograph_is_warned_of(end):
-    clipped = photo(metadata=CAMERA)
-    clipped.pixels[:200] = end
-    assert warnings_of(clipped) == ["clipped"]
+    pixels = photo().pixels.copy()
+    pixels[:200] = end
+    assert warnings_of(Photo.from_array(pixels, color_order="RGB", metadata=CAMERA)) == ["clipped"]
 
 
 def test_photographs_of_different_cameras_are_warned_of():

@@ -123,6 +123,28 @@ def test_an_image_of_pillow_with_damaged_exif_is_as_stored_and_one_that_is_cut_s
         assert code_of(image) == "damaged"
 
 
+def test_a_closed_image_of_pillow_is_refused_as_such(tmp_path, codes):
+    path = write_image(tmp_path / "a.jpg", codes)
+    with Image.open(path) as never_read:
+        pass
+    loaded, plain = Image.open(path), Image.fromarray(codes)
+    loaded.load()
+    for image in (loaded, plain):
+        image.close()
+    with path.open("rb") as file:
+        of_closed_file = Image.open(file)
+    images = [never_read, loaded, plain, of_closed_file]
+    assert [code_of(image) for image in images] == ["pillow_closed"] * 4
+
+
+def test_pixels_that_were_checked_cannot_be_changed(tmp_path, codes):
+    read = read_photo(write_image(tmp_path / "a.png", codes))
+    for photo in (read, Photo.from_array(read.pixels, color_order="RGB"), Photo(read.pixels.copy(), 8, False, "a")):
+        for pixels in (photo.pixels, photo.pixels[0]):
+            with pytest.raises(ValueError, match="read-only"):
+                pixels[...] = 2
+
+
 #: Code -> arrays that are refused with it, and the order of their channels.
 REFUSED_ARRAYS = {
     "array_is_none": [(None, None)],

@@ -15,10 +15,11 @@ class Device(StrEnum):
     COMPACT = "compact"
     CAMERA = "camera"
     SCANNER = "scanner"
+    THERMAL = "thermal camera"
     UNKNOWN = ""
 
 
-_PHONE, _COMPACT, _CAMERA, _SCANNER, _UNKNOWN = Device
+_PHONE, _COMPACT, _CAMERA, _SCANNER, _THERMAL, _UNKNOWN = Device
 
 #: Kind -> beginnings of the makes, in lower case, of makers of this kind alone, as far as photographs of them are seen.
 #: Phones include tablets, cameras digital backs; behind a scanner, the photograph is on film or paper.
@@ -34,6 +35,10 @@ MAKERS = {
     Device.SCANNER: (
         *("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon"),
         *("brother", "pfu", "xerox", "lexmark", "avision", "visioneer", "heidelberg", "creo", "czur", "pie"),
+    ),
+    Device.THERMAL: (
+        *("flir", "teledyne flir", "fluke", "seek", "testo", "hikmicro", "infratec", "infiray", "guide", "wuhan guide"),
+        *("optris", "workswell", "topdon"),
     ),
     Device.COMPACT: (
         *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "agfaphoto"),
@@ -97,10 +102,18 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
 _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "jk imaging": "kodak", "asahi": "pentax"}
 _OTHER_NAMES |= {"seiko epson": "epson", "leitz": "leica", "konica": "minolta"}
 
+#: The makers of drones with thermal cameras, and the shape of such pictures: other cameras of drones have other shapes.
+_DRONES, _THERMAL_SHAPE = ("dji", "autel"), 1.25
 
-def device_of(make: str, model: str) -> Device:
-    """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN."""
+
+def device_of(make: str, model: str, shape: float = 0.0) -> Device:
+    """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN.
+
+    `shape` is the width of the picture divided by its height.
+    """
     maker = (make or model).casefold().strip()
+    if maker.startswith(_DRONES) and shape == _THERMAL_SHAPE:
+        return _THERMAL
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker
     if re.search(_SCANNER_MODEL, model.casefold().strip()):

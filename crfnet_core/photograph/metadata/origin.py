@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -53,6 +54,7 @@ _DEVICES = {
     Device.COMPACT: "a compact camera",
     Device.CAMERA: "a camera with interchangeable lenses",
     Device.SCANNER: "a scanner of film or paper",
+    Device.THERMAL: "a thermal camera",
 }
 
 
@@ -64,7 +66,7 @@ class FileOrigin:
     camera: str  # maker and model
     editor: str  # the program that edited or developed the photograph
     is_scaled: bool | None  # after the camera took it; None if unknown
-    is_resaved: bool | None  # whether a program encoded the file; False if just as the camera wrote it
+    is_resaved: bool | None  # whether a program encoded the file; False if the camera did
     jpeg_quality: int | None  # at which the IJG library writes the file's quantization tables; None for other tables
     picture_shape: str  # ratio of the sides: "3:2", "4:3", "16:9", "2:1" or "other"
     encoding: Encoding
@@ -92,7 +94,7 @@ class FileOrigin:
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
-    device = device_of(metadata.make, metadata.model)
+    device = device_of(metadata.make, metadata.model, metadata.width / max(metadata.height, 1))
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_adobes = metadata.has_adobe or (bool(metadata.raw_file) and encoded_by is not False)
@@ -188,7 +190,7 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         yield "its EXIF is compressed and was not read"
     else:
         yield "the file names no camera"
-    yield from filter(None, (_program_words(origin), _scaling_words(origin, metadata)))
+    yield from filter(None, (_program_words(origin, metadata), _scaling_words(origin, metadata)))
     if metadata.is_turned:
         yield "turned upright, as the file asks"
     if origin.encoding == Encoding.MOVIE:
@@ -197,11 +199,15 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
         yield f"{metadata.file_format} files hold {origin.encoding}"
 
 
-def _program_words(origin: FileOrigin) -> str:
+def _program_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     """Return the part of programs in words; empty if nothing is known of any, or scaling says it."""
     if origin.editor:
         return f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
     if origin.is_resaved is False:
+        size = metadata.width, metadata.height
+        before = metadata.exif_size or size
+        if math.prod(size) < (1 - SAME_SHAPE) * math.prod(before):
+            return "cropped from {} x {} to {} x {} pixels, but not encoded again".format(*before, *size)
         return "the file is as the camera wrote it"
     if not origin.is_resaved or origin.is_scaled:
         return ""
@@ -218,4 +224,5 @@ def _scaling_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     if before and sorted(before) != sorted(size):
         verb = "scaled" if max(size) > max(before) else "scaled or cropped"
         return "{} from {} x {} to {} after the camera wrote it".format(verb, *before, now)
-    return "" if origin.device is Device.SCANNER else f"probably scaled after the camera wrote it ({now})"
+    has_few_pixels = origin.device in (Device.SCANNER, Device.THERMAL)  # as it is
+    return "" if has_few_pixels else f"probably scaled after the camera wrote it ({now})"

@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from crfnet_core.errors import Notice, PhotoError
-from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.metadata import Device, FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range, is_mostly_ends
@@ -27,6 +27,7 @@ class Kind(StrEnum):
     LOG_FOOTAGE = "log footage"
     LIMITED_RANGE = "limited range"
     RENDERING = "rendering"
+    THERMAL = "thermal picture"
     SENT_COPY = "sent copy"
     FLAT = "flat frame"
     FEW_LEVELS = "few levels"
@@ -72,6 +73,8 @@ def recognize(
     for origin in origins:
         if origin.renderer:
             return _recognized(Kind.RENDERING, "rendering", "rendering_advice", renderer=origin.renderer)
+        if origin.device is Device.THERMAL:
+            return _recognized(Kind.THERMAL, "thermal", "thermal_advice", camera=origin.camera)
         if origin.is_sent_copy:
             return _recognized(Kind.SENT_COPY, "sent_copy", "sent_copy_advice", quality=origin.jpeg_quality)
     return None

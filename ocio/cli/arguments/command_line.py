@@ -120,7 +120,7 @@ def _add_linearize(commands: Commands) -> None:
     lut = "response to use: a 1D LUT of any format that OpenColorIO reads"
     parts.add_value(parser, "--lut", "FILE", lut, given_path)
     parts.add_frames(parser, "PLATES are photographs, each with its own response without --lut and --camera")
-    parts.add_flag(parser, "--encoded", "OpenEXR plates that do not state their encoding hold encoded values")
+    parts.add_flag(parser, "--encoded", "for --lut and --camera: OpenEXR plates without a stated encoding are encoded")
     parts.add_network(parser)
     parts.add_plate(parser)
 

@@ -153,10 +153,19 @@ def origin_of(**fields):
     return file_origin(FileMetadata(**sent | tables(75) | fields))
 
 
-def test_a_rendering_is_recognized_by_its_metadata():
-    recognition = recognize(PLAIN_LEVELS, log_probability=0.0, origins=[origin_of(renderer="Blender")])
-    assert recognition.kind is Kind.RENDERING
-    assert "Blender" in recognition.reason
+@pytest.mark.parametrize(
+    ("fields", "kind", "name"),
+    [
+        ({"renderer": "Blender"}, Kind.RENDERING, "Blender"),
+        ({"make": "FLIR Systems AB", "model": "FLIR T640"}, Kind.THERMAL, "FLIR T640"),
+        ({"make": "DJI", "model": "M3T", "width": 640, "height": 512}, Kind.THERMAL, "DJI M3T"),
+        ({"make": "DJI", "model": "M3T", "width": 4000, "height": 3000}, None, ""),
+    ],
+)
+def test_pictures_that_no_camera_of_light_made_are_recognized_by_their_metadata(fields, kind, name):
+    recognition = recognize(PLAIN_LEVELS, log_probability=0.0, origins=[origin_of(**fields)])
+    assert (recognition and recognition.kind) is kind
+    assert name in (recognition.reason if recognition else "")
 
 
 @pytest.mark.parametrize(
