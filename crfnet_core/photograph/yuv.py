@@ -58,7 +58,8 @@ class Coding:
     def from_frame(cls, frame: VideoFrame, *, is_still: bool, codes: Sequence[int] = ()) -> Coding | None:
         """Return the coding of a decoded frame, by `codes` of its container first; None if its samples are not read."""
         form, bits, lines = frame.format, bit_depth(frame), frame.height
-        if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
+        is_other = form.name.startswith(("xyz", "bayer")) or form.name.endswith(("f16le", "f32le"))
+        if is_other or form.is_bit_stream or not 8 <= bits <= 16:
             return None
         matrix, color_range = codes or (int(frame.colorspace), int(frame.color_range))
         is_rgb, is_gray = form.is_rgb or form.has_palette, len(form.components) < 3

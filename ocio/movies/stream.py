@@ -267,7 +267,7 @@ def _color_tags(tags: ColorTags, metadata: Mapping[str, str]) -> ColorTags:
 
 def _filters(frame: VideoFrame, codes: ColorCodes) -> tuple[str, ...]:
     """Return the filters by which FFmpeg makes RGB of a form that is not read, without taking BT.601."""
-    if codes[0] > UNSPECIFIED[0]:
+    if codes[0] > UNSPECIFIED[0] and not frame.format.name.startswith("xyz"):  # which has no matrix
         transfer = TRANSFERS.get(codes[0]) if codes[3] == UNSPECIFIED[3] else None
         stated = (f"setparams=color_primaries=bt2020:color_trc={transfer}",) if transfer else ()
         return (*stated, "zscale=matrix=gbr", "format=gbrp16")

@@ -1,12 +1,11 @@
 """The OpenEXR file of a linear plate: its header and its pixels."""
 
-import mmap
 import re
 import struct
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import OpenImageIO as oiio
@@ -40,6 +39,9 @@ SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float
 
 #: Our attribute of the form in which a file was written: see `written_form`.
 FORM = "crfnet:form"
+
+#: Bytes of a file that hold the whole header.
+MOST_HEADER = 2**20
 
 #: An attribute in a header up to its value: name, type and the size of the value.
 ATTRIBUTE = re.compile(rb"[^\0]+\0[^\0]+\0(.{4})", re.DOTALL)
@@ -98,20 +100,27 @@ def is_whole(path: Path, header: Any) -> bool:
     The table of their places is written last, over zeros. zlib verifies the checksum of the last data.
     """
     try:
-        with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-            table = _header_end(content)
-            places = struct.unpack_from(f"<{header.height}q", content, table)
-            leaders = [struct.unpack_from("<ii", content, place) for place in places]
+        with path.open("rb") as file:
+            table = _header_end(file.read(MOST_HEADER))
+            places = struct.unpack(f"<{header.height}q", _part(file, table, 8 * header.height))
+            leaders = [struct.unpack("<ii", _part(file, place, 8)) for place in places]
             ends = [place + 8 + size for place, (_, size) in zip(places, leaders, strict=True)]
-            if leaders[-1][1] < header.scanline_bytes():  # else it is stored as it is, since zlib would enlarge it
-                zlib.decompress(content[places[-1] + 8 :])
-            is_filled = [table + 8 * header.height, *ends] == [*places, len(content)]
-            return is_filled and [y for y, _ in leaders] == [header.y + row for row in range(header.height)]
+            last = _part(file, places[-1] + 8)
+        if leaders[-1][1] < header.scanline_bytes():  # else it is stored as it is, since zlib would enlarge it
+            zlib.decompress(last)
+        is_filled = [table + 8 * header.height, *ends] == [*places, places[-1] + 8 + len(last)]
+        return is_filled and [y for y, _ in leaders] == [header.y + row for row in range(header.height)]
     except (OSError, ValueError, struct.error, zlib.error):
         return False
 
 
-def _header_end(content: mmap.mmap) -> int:
+def _part(file: BinaryIO, place: int, size: int = -1) -> bytes:
+    """Return `size` bytes of a file from a place on, by default all."""
+    file.seek(place)
+    return file.read(size)
+
+
+def _header_end(content: bytes) -> int:
     """Return where the header of an OpenEXR file ends; somewhere else if the header is damaged."""
     position = 8  # after the magic number and the version
     while attribute := ATTRIBUTE.match(content, position):

@@ -1,3 +1,4 @@
+import mmap
 import os
 import re
 import struct
@@ -129,6 +130,13 @@ def test_what_follows_a_jpeg_is_ignored(tmp_path):
     whole = jpeg(path)
     expected = read_photo(path).pixels
     np.testing.assert_array_equal(read_photo(written(path, whole + bytes(5000))).pixels, expected)
+
+
+@pytest.mark.parametrize("name", ["a.jpg", "a.jxl", "a.jp2"])
+def test_no_file_is_mapped(tmp_path, codes, monkeypatch, name):
+    """Where the disk cannot read a page of a mapped file, the system ends the process."""
+    monkeypatch.setattr(mmap, "mmap", None)
+    assert read_photo(write_image(tmp_path / name, codes)).shape == codes.shape
 
 
 @pytest.mark.parametrize("fraction", [0.3, 0.5, 0.99])

@@ -118,7 +118,7 @@ def test_the_container_overrides_the_frame():
     assert (coding.matrix, coding.is_full_range) == ("BT.2020", True)
 
 
-@pytest.mark.parametrize(("form", "matrix"), [("yuv444p", 8), ("monow", 2), ("grayf32le", 2)])
+@pytest.mark.parametrize(("form", "matrix"), [("yuv444p", 8), ("monow", 2), ("grayf32le", 2), ("xyz12le", 2)])
 def test_other_matrices_and_samples_are_not_read(form, matrix):
     frame = av.VideoFrame(64, 64, form)
     frame.colorspace = matrix

@@ -26,6 +26,9 @@ _UNSUPPORTED = (
 
 MAX_PIXELS = 250_000_000  # of the largest photograph that is read, in at most 5 GB of memory; cameras have 200 million
 
+#: Bytes of the largest JPEG, JPEG 2000 or JPEG XL. They are read as a whole: of mapped files, a bad sector is a SIGBUS.
+MOST_CONTENT = 2**30
+
 #: PhotometricInterpretation of TIFF: white or black is zero, RGB, YCbCr; the two of camera raw; a palette; LogLuv.
 WHITE_IS_ZERO, READ_PHOTOMETRICS = 0, (0, 1, 2, 6)
 RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, (32844, 32845)

@@ -3,7 +3,6 @@
 Source: ISO/IEC 15444-1:2019, A.5.1 (SIZ) and I.5.3 (the boxes of JP2), and 15444-2, M.11.7.3 (any ICC profile).
 """
 
-import mmap
 import struct
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,8 @@ from typing import Any
 import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.header_checks import damaged, with_segments
+from crfnet_core.files import read_bytes
+from crfnet_core.photograph.image_io.header_checks import MOST_CONTENT, damaged, with_segments
 from crfnet_core.photograph.image_io.iso_boxes import boxes, find_box
 
 _SIZE_MARKER = b"\xff\x4f\xff\x51"  # start of the codestream and of its marker SIZ
@@ -25,9 +25,9 @@ _PREMULTIPLIED = 2  # type of a channel by which the colors are multiplied
 
 def with_jp2_boxes(header: Any, path: Path) -> Any:
     """Return the header with its tags of color and alpha; raise PhotoError where OpenImageIO returns other pixels."""
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        start = content.find(_SIZE_MARKER)
-        _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
+    content = read_bytes(path, most=MOST_CONTENT)
+    start = content.find(_SIZE_MARKER)
+    _check_size(path, content[start + 8 : start + 8 + 36 + 3 * 16384])
     try:  # a bare codestream has no boxes; of several of one name the first counts
         headers = dict(reversed([*boxes(find_box(path, b"jp2h"))]))
     except ValueError as problem:

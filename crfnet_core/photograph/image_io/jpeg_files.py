@@ -1,6 +1,5 @@
 """JPEG files: checks before decoding, harmless warnings, and the standard image of a file with a gain map."""
 
-import mmap
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,7 +7,8 @@ from itertools import islice
 from pathlib import Path
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.header_checks import check_size, damaged
+from crfnet_core.files import read_bytes
+from crfnet_core.photograph.image_io.header_checks import MOST_CONTENT, check_size, damaged
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
@@ -38,40 +38,40 @@ class JpegFile:
 def checked_jpeg(path: Path) -> JpegFile:
     """Refuse a JPEG that OpenImageIO would accept: a huge frame, which opening allocates, and a missing end."""
     warnings, scan, before, between = set(), 0, 2, 0
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        for count, (marker, stray, scan, end) in enumerate(_segments(content)):
-            if stray:
-                warnings.add(f"Corrupt JPEG data: {stray} extraneous bytes before marker 0x{marker:02x}")
-            between += scan - before - 4
-            before = end
-            if count >= _MOST_SEGMENTS or between > _MOST_BETWEEN:
-                raise damaged(path, "JPEG", "its header has no end")
-            if marker == _JPEG_LS:
-                raise PhotoError("coding_not_read", path=path, kind="JPEG", problem="JPEG-LS")
-            if marker in _START_OF_FRAME and (frame := content[scan:end]):
-                if frame[0] != 8:
-                    problem = f"{frame[0]} bits per sample"
-                    raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=problem)
-                check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))
-        if content.rfind(_END_OF_IMAGE, scan) < 0:
-            raise damaged(path, "JPEG", "it has no end marker")
-        later = [marker for marker, *_ in islice(_segments(content, before, last=_END_OF_IMAGE[1]), _MOST_SEGMENTS)]
-        if len(later) == _MOST_SEGMENTS or later.count(_START_OF_SCAN) >= _MOST_SCANS:
-            raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"more than {_MOST_SCANS} scans")
-        return JpegFile(read_jpeg_header(content), frozenset(warnings))
+    content = read_bytes(path, most=MOST_CONTENT)
+    for count, (marker, stray, scan, end) in enumerate(_segments(content)):
+        if stray:
+            warnings.add(f"Corrupt JPEG data: {stray} extraneous bytes before marker 0x{marker:02x}")
+        between += scan - before - 4
+        before = end
+        if count >= _MOST_SEGMENTS or between > _MOST_BETWEEN:
+            raise damaged(path, "JPEG", "its header has no end")
+        if marker == _JPEG_LS:
+            raise PhotoError("coding_not_read", path=path, kind="JPEG", problem="JPEG-LS")
+        if marker in _START_OF_FRAME and (frame := content[scan:end]):
+            if frame[0] != 8:
+                problem = f"{frame[0]} bits per sample"
+                raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=problem)
+            check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))
+    if content.rfind(_END_OF_IMAGE, scan) < 0:
+        raise damaged(path, "JPEG", "it has no end marker")
+    later = [marker for marker, *_ in islice(_segments(content, before, last=_END_OF_IMAGE[1]), _MOST_SEGMENTS)]
+    if len(later) == _MOST_SEGMENTS or later.count(_START_OF_SCAN) >= _MOST_SCANS:
+        raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"more than {_MOST_SCANS} scans")
+    return JpegFile(read_jpeg_header(content), frozenset(warnings))
 
 
 def base_image(path: Path) -> bytes:
     """Return the first picture of an Ultra HDR JPEG, of which OpenImageIO makes linear half floats with the second."""
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        scan = max((begin for _, _, begin, _ in _segments(content)), default=0)
-        base = content[: content.find(_END_OF_IMAGE, scan) + 2]
-        if len(base) == len(content):
-            raise PhotoError("scene_linear_file", path=path, kind="a JPEG file of half samples")
+    content = read_bytes(path, most=MOST_CONTENT)
+    scan = max((begin for _, _, begin, _ in _segments(content)), default=0)
+    base = content[: content.find(_END_OF_IMAGE, scan) + 2]
+    if len(base) == len(content):
+        raise PhotoError("scene_linear_file", path=path, kind="a JPEG file of half samples")
     return base
 
 
-def _segments(content: mmap.mmap, end: int = 2, *, last: int = _START_OF_SCAN) -> Iterator[tuple[int, int, int, int]]:
+def _segments(content: bytes, end: int = 2, *, last: int = _START_OF_SCAN) -> Iterator[tuple[int, int, int, int]]:
     """Yield segments, up to a marker: each one's marker, the stray bytes in front, where its payload begins, ends."""
     while segment := _SEGMENT.search(content, end):
         begin, stray = segment.end(), segment.start() - end

@@ -3,7 +3,6 @@
 Source: ISO/IEC 18181-1:2024, D.2 and D.3 (the header of the codestream), and 18181-2 (boxes).
 """
 
-import mmap
 import re
 from contextlib import suppress
 from dataclasses import dataclass
@@ -11,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io.header_checks import text_attribute, with_segments
+from crfnet_core.files import read_bytes
+from crfnet_core.photograph.image_io.header_checks import MOST_CONTENT, text_attribute, with_segments
 from crfnet_core.photograph.image_io.iso_boxes import find_box
 
 #: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
@@ -31,12 +31,14 @@ class JxlHeader:
     orientation: int = 1
     bits: int = 8  # per sample
     is_xyb: bool = True  # else the codes of the picture's own color space are stored
+    has_profile: bool = True  # of ICC; else fields name the color space, of which libjxl makes a profile
     is_unread: bool = False  # whether EXIF or XMP is compressed, and so not read
 
 
 def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
     """Return the header with EXIF and XMP, unless these are compressed; refuse what only the decoder made linear."""
-    if stored.is_xyb and text_attribute(header, "ICCProfile:profile_description") in _LINEAR_PROFILES:
+    profile = text_attribute(header, "ICCProfile:profile_description")
+    if stored.is_xyb and stored.has_profile and profile in _LINEAR_PROFILES:
         raise PhotoError("jxl_linear", path=path)
     segments = {}
     with suppress(ValueError):  # of boxes that are too large or too far; a codestream has none
@@ -53,13 +55,12 @@ def with_jxl_boxes(header: Any, path: Path, stored: JxlHeader) -> Any:
 
 def jxl_header(path: Path) -> JxlHeader:
     """Return the header of the codestream; refuse a preview, and an animation, whose last frame OpenImageIO returns."""
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        start = _START.search(content)
-        fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
-        is_unread = bool(_COMPRESSED.search(content))
+    content = read_bytes(path, most=MOST_CONTENT)
+    start, is_unread = _START.search(content), bool(_COMPRESSED.search(content))
+    fields = _Fields(int.from_bytes(content[start.end() : start.end() + _HEAD] if start else b"", "little"))
     fields.skip_sides()
     if fields.number():  # all are the default ones
-        return JxlHeader(is_unread=is_unread)
+        return JxlHeader(has_profile=False, is_unread=is_unread)
     orientation = 1
     if fields.number():
         orientation += fields.number(3)
@@ -77,7 +78,9 @@ def jxl_header(path: Path) -> JxlHeader:
             fields.choice((0, 0), (3, 0), (4, 0), (1, 3))  # fewer samples
             fields.number(8 * fields.choice((0, 0), (0, 4), (16, 5), (48, 10)))  # its name
             fields.number(is_alpha)  # whether the colors are multiplied by it
-    return JxlHeader(orientation, bits, is_xyb=bool(fields.number()), is_unread=is_unread)
+    is_xyb = bool(fields.number())
+    has_profile = not fields.number() and bool(fields.number())  # the color space is not the default one
+    return JxlHeader(orientation, bits, is_xyb, has_profile, is_unread)
 
 
 @dataclass

@@ -32,6 +32,7 @@ from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pill
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
+from crfnet_core.photograph.metadata.icc import SOURCE
 from crfnet_core.photograph.metadata.tiff_tags import interop_index, tiff_directory
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
@@ -111,9 +112,8 @@ class _OpenFile:
     source: Any
     header: Any
     jpeg: JpegFile | None
+    jxl: JxlHeader
     has_gain_map: bool = False
-    is_turned: bool = False  # whether the decoder has turned it upright
-    is_unread: bool = False  # whether its metadata is compressed
 
     @property
     def turn(self) -> Turn:
@@ -124,8 +124,11 @@ class _OpenFile:
         """Return the metadata of the upright picture."""
         metadata = metadata_of_header(self._upright_header(), self.kind, self.jpeg.metadata if self.jpeg else None)
         has_gain_map = self.has_gain_map or metadata.has_gain_map
-        is_turned = self.is_turned or self.turn != UPRIGHT
-        return replace(metadata, is_turned=is_turned, has_gain_map=has_gain_map, is_unread=self.is_unread)
+        is_turned = self.jxl.orientation > 1 or self.turn != UPRIGHT  # the former by the decoder
+        if not self.jxl.has_profile:
+            metadata = replace(metadata, color=metadata.color.renamed(SOURCE, "codestream"))
+        is_unread = self.jxl.is_unread
+        return replace(metadata, is_turned=is_turned, has_gain_map=has_gain_map, is_unread=is_unread)
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
@@ -213,8 +216,7 @@ def _opened_kind(path: Path, kind: str) -> Iterator[_OpenFile]:
                     yield replace(file, path=path, has_gain_map=True)
         else:
             header = with_color_chunks(header, path) if kind == "PNG" else header
-            is_turned, is_unread = jxl.orientation > 1, jxl.is_unread
-            yield _OpenFile(path, kind, source, header, jpeg, is_turned=is_turned, is_unread=is_unread)
+            yield _OpenFile(path, kind, source, header, jpeg, jxl)
     finally:
         source.close()
 

@@ -1,5 +1,7 @@
 """The color tags of files: primaries, code points of ITU-T H.273 (CICP), and published curves by name."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -59,6 +61,11 @@ class ColorTags:
     transfer: str = ""  # the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"
     source: str = ""  # the tag that names primaries, for example "ICC profile", "CICP" or "EXIF"; empty without one
     transfer_source: str = ""  # the tag that names an encoding, also sRGB or another one of displays
+
+    def renamed(self, source: str, name: str) -> ColorTags:
+        """Return the same tags with another name of their source."""
+        sources = (text.replace(source, name) for text in (self.source, self.transfer_source))
+        return ColorTags(self.primaries, self.transfer, *sources)
 
 
 def cicp_tags(codes: Sequence[int]) -> ColorTags:

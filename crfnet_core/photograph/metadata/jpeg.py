@@ -1,10 +1,8 @@
 """The metadata in the segments of a JPEG file, and the quantization tables of the IJG library (libjpeg)."""
 
 import io
-import mmap
 import struct
 import warnings
-from typing import Any
 
 from PIL.JpegImagePlugin import JpegImageFile
 
@@ -33,13 +31,12 @@ _GAIN_MAPS = (b"http://ns.adobe.com/hdr-gain-map/", b"urn:iso:std:iso:ts:21496:-
 DAMAGE = (IndexError, KeyError, OSError, SyntaxError, TypeError, ValueError, ZeroDivisionError, struct.error)
 
 
-def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
+def read_jpeg_header(content: bytes) -> FileMetadata:
     """Return the metadata in the segments up to the first scan that OpenImageIO leaves out; empty if damaged."""
-    file: Any = io.BytesIO(content) if isinstance(content, bytes) else content
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of damaged EXIF
-            image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
+            image = JpegImageFile(io.BytesIO(content))  # not Image.open, which refuses 200 megapixels
     except DAMAGE:
         return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
