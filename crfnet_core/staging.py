@@ -68,7 +68,9 @@ def remove_abandoned(folder: Path) -> None:
         with suppress(OSError, ValueError):
             if not is_own_folder(temporary):
                 continue
-            with (temporary / _LOCK).open("ab") as file:
+            if not (temporary / _LOCK).exists():
+                temporary.rmdir()  # of a run killed before it locked a file; with content, it is somebody else's
+            with (temporary / _LOCK).open("rb+") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
                 if not _is_there(file, temporary):
                     continue

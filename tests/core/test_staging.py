@@ -110,6 +110,7 @@ def left_by_a_killed_run(folder, earlier, staged=""):
     """Make a temporary folder of a set of three with earlier and new files, which no process has locked."""
     temporary = folder / ".crfnet-killed"
     (temporary / ".crfnet-earlier-3").mkdir(parents=True)
+    (temporary / ".crfnet-lock").touch()
     for name in earlier:
         (temporary / ".crfnet-earlier-3" / name).write_text("old")
     for name in staged:
@@ -159,6 +160,15 @@ def secret(tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "key").write_text("secret")
     return tmp_path / "elsewhere"
+
+
+def test_only_folders_without_content_or_with_our_locked_file_are_taken_for_ours(tmp_path):
+    for name in (".crfnet-killed", ".crfnet-presets"):
+        (tmp_path / name).mkdir()
+    (tmp_path / ".crfnet-presets" / "mine").write_text("mine")
+    remove_abandoned(tmp_path)
+    assert content(tmp_path / ".crfnet-presets") == {"mine": "mine"}
+    assert not (tmp_path / ".crfnet-killed").exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs links")
