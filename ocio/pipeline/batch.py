@@ -179,7 +179,8 @@ def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], records: Mapping[
         _check_earlier(batch, tasks, records, configs)
     targets = [path for task in tasks if not unreadable_reason(task.photo) for path in task.targets]
     check_targets(batch.out, targets, photos=photographs, configs=configs, overwrite=True)
-    return tasks
+    careful = replace(batch, plates=replace(batch.plates, overwrite=False))  # another run may write the same meanwhile
+    return [task if task.existing else replace(task, batch=careful) for task in tasks]
 
 
 def _check_earlier(

@@ -103,17 +103,17 @@ class RecordFile:
     def append(self, record: PhotographRecord, *, files: Sequence[Path] = ()) -> None:
         """Append a record, and see that it is on the disk; not an error if another run has recorded its `files`."""
         text = json.dumps(asdict(record), ensure_ascii=False) + "\n"
-        with self.locked() as file:
-            earlier = self.read().get(record.place) if record.error and files else None
-            if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
-                return
-            self._drop_cut_line(file)
-            try:
+        try:
+            with self.locked() as file:
+                earlier = self.read().get(record.place) if record.error and files else None
+                if earlier and not earlier.error and (self.path.parent / (earlier.lut or earlier.linear)).is_file():
+                    return
+                self._drop_cut_line(file)
                 file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text
                 file.flush()
                 os.fsync(file.fileno())
-            except OSError as problem:
-                raise PlateError("not_written", path=self.path, reason=problem.strerror) from problem
+        except OSError as problem:  # to close the file raises again what failed in it
+            raise PlateError("not_written", path=self.path, reason=problem.strerror) from problem
 
     def mend(self) -> None:
         """Remove what a killed run has written of its last line."""

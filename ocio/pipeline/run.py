@@ -100,8 +100,8 @@ def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterat
         return
     workers = min(workers, len(tasks))
     if (workers > 1 or scheduler) and not tasks[0].batch.options.threads:
-        single = replace(tasks[0].batch, options=replace(tasks[0].batch.options, threads=1))
-        tasks = [replace(task, batch=single) for task in tasks]
+        options = replace(tasks[0].batch.options, threads=1)
+        tasks = [replace(task, batch=replace(task.batch, options=options)) for task in tasks]
     with worker_pool(workers, scheduler=scheduler) as pool:
         futures = {pool.submit(_recorded, _absolute(task) if scheduler else task): task for task in tasks}
         try:

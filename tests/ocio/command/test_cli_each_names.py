@@ -8,6 +8,7 @@ import pytest
 
 from crfnet.defaults import ESTIMATES
 from crfnet.output_files import folded
+from crfnet.pipeline import run
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.records import plates_in, records_in
@@ -169,3 +170,24 @@ def test_a_folder_that_cannot_be_read_is_refused(estimate, photographs, tmp_path
     locked.add("photographs")
     assert estimate(photographs, *QUICK).refusal == "unreadable"
     assert not (tmp_path / "out").exists()
+
+
+def test_a_run_that_replaces_takes_no_file_that_another_has_written_meanwhile(
+    estimate, photographs, tmp_path, out, monkeypatch
+):
+    (tmp_path / "others").mkdir()
+    shutil.copy(photographs / "b.JPG", tmp_path / "others" / "a.jpg")
+    plan_tasks = run.plan_tasks
+
+    def planned(*arguments):
+        tasks = plan_tasks(*arguments)
+        monkeypatch.setattr(run, "plan_tasks", plan_tasks)
+        assert estimate(photographs, *QUICK, "--overwrite").code == 0
+        return tasks
+
+    monkeypatch.setattr(run, "plan_tasks", planned)
+    assert estimate(tmp_path / "others", *QUICK, "--overwrite").refusal == "photographs_failed"
+    assert {record["photograph"]: record["error"] for record in records_in(out)}[str(photographs / "a.jpg")] == ""
+    assert json.loads((out / "a.json").read_text())["photographs"][0]["name"] == "a.jpg"
+    assert estimate(tmp_path / "others", *QUICK, "--overwrite").code == 0
+    assert sorted(plates_in(out)) == ["a", "a_2", "b"]
