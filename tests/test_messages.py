@@ -94,5 +94,5 @@ def test_the_command_has_a_remedy_only_for_errors_that_are_raised():
     known = {code for sentences in PACKAGES.values() for code in sentences}
     assert set(remedies.REMEDIES) <= known
     assert not set(remedies.SENTENCES) & known
-    text = "".join(path.read_text("utf-8") for path in (ROOT / "ocio/cli/commands").glob("*.py"))
+    text = "".join(path.read_text("utf-8") for path in (ROOT / "ocio/cli").rglob("*.py"))
     assert all(f'CommandError("{code}"' in text for code in remedies.SENTENCES)

@@ -78,11 +78,16 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
     """Run the module of the subcommand's name in `crfnet.cli.commands` and return the exit code."""
     # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
     from crfnet_core.errors import CRFNetError
+    from crfnet_core.files import escaped_name
+
+    from .remedies import CommandError
 
     try:
         given = vars(arguments)
         alone = set(map(Path, given.get("photos", given.get("plates", ())))) if given.get("each") else set()
-        "".join(text for text in argv if Path(text) not in alone).encode()  # refuses names that are not valid Unicode
+        for text in argv:
+            if Path(text) not in alone and escaped_name(text) != text:
+                raise CommandError("name_not_unicode", name=escaped_name(text))
         code = import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError, RuntimeError) as problem:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 from crfnet_core.errors import CRFNetError
 
+from ..messages import NOT_TEXT
+
 #: Code of an error -> what the user can do with an option, behind "; " at the end of its sentence.
 REMEDIES: Mapping[str, str] = {
     # calibration
@@ -37,6 +39,7 @@ REMEDIES: Mapping[str, str] = {
 SENTENCES: Mapping[str, str] = {
     "each_option_alone": "--{name} is for --each, one response for each photograph; add it, or drop --{name}",
     "frames_of_each": "--frames chooses the frames of one response, --each takes photographs; drop one",
+    "name_not_unicode": f"{{name}}: the name {NOT_TEXT}",
     "packaged_camera": "{name!r} is a packaged camera, which cannot be removed",
     "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
     " such as shot.%04d.png, or a name without a placeholder",
