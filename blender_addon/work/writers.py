@@ -107,7 +107,7 @@ def _export(job: Job, lut: Lut1D, stops: float, primaries: Primaries) -> Written
     files = output_files(job.plate, folder)
     hint = job.plate.folder.name if job.plate.folder else ""
     look = Look(color_space(job.plate, files, stops, primaries), lut, hint)
-    others = {path.name: lut for path in files.luts if path != files.lut}
+    others = {path.name: lut for path in files.luts}
     overwrite = _may_replace(job, (*files.luts, files.config))
     derived = write_derived_config(find_config(job.config), folder, [look], others=others, overwrite=overwrite)
     return Written(derived.files, derived.path)

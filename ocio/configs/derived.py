@@ -6,9 +6,8 @@ next to the new config. Nothing of the base is changed, nothing is deleted.
 """
 
 import copy
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -99,15 +98,13 @@ def _free_space(
 ) -> PlateColorSpace:
     """Return a plate's color space under a name, and with a LUT file, that neither the base nor `spaces` have."""
     file, config = Path(look.space.lut_file), base.config
+    if base.path:  # its folders come first, and may get a file of any name later: none of this name has another table
+        file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
     taken = {folded(name) for name in (*(space.name for space in spaces), *_other_names(config))}
     aliases = tuple(alias for alias in look.space.aliases if folded(alias) not in taken)
-    used = {folded(name) for name in (*others, *(space.lut_file for space in spaces))} | _names_on_path(base)
-    text = folded(base.path.read_text(encoding="utf-8")) if base.path else ""  # which may name files that are absent
-    if re.search(r"\$[\w{]|%.+%", text):  # other values of variables lead to other files, but to none of this name
-        file = file.with_stem(f"{file.stem} ({lut_identity(look.lut)[-8:]})")
+    used = {folded(name) for name in (*others, *(space.lut_file for space in spaces))}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
-    named = (name for name in stems if not re.search(rf"[\s\"'/\\]{re.escape(folded(name))}", text))
-    lut_file = next(name for name in named if folded(name) not in used)
+    lut_file = next(name for name in stems if folded(name) not in used)
     free = (name for name in distinct_names(look.space.name, look.folder) if folded(name) not in taken)
     name = next(name for name in free if config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file, aliases=aliases)
@@ -138,14 +135,3 @@ def _relocated(base: ConfigSource) -> OCIO.Config:
                 config.addSearchPath(folder)
     config.addSearchPath(".")
     return config
-
-
-def _names_on_path(base: ConfigSource) -> set[str]:
-    """Return the names of all files in the folders of a config's search path, folded."""
-    names, context = set[str](), base.config.getCurrentContext()
-    if base.path is None:
-        return names
-    for folder in [*context.getSearchPaths()] or ["."]:
-        with suppress(OSError):
-            names |= {folded(file.name) for file in (base.path.parent / context.resolveStringVar(folder)).iterdir()}
-    return names

@@ -155,7 +155,7 @@ def _shared_patterns(claims: Iterable[FileClaim]) -> set[str]:
     """Return the patterns of claims that get no space, or have a file in common with one of another space."""
     alike = defaultdict[str, list[tuple[str, str]]](list)  # but for numbers
     for pattern, space in ((pattern, claim.space) for claim in claims for pattern in claim.patterns):
-        alike[re.sub("[-0-9#]", "", pattern.casefold())].append((pattern, space))
+        alike[re.sub("[-0-9#]", "", _folded(pattern))].append((pattern, space))
     return {
         pattern
         for group in alike.values()
@@ -164,10 +164,15 @@ def _shared_patterns(claims: Iterable[FileClaim]) -> set[str]:
     }
 
 
+def _folded(pattern: str) -> str:
+    """Return the same text for all names that a rule takes for one; upper() unites the i without a dot with i."""
+    return pattern.upper().casefold()
+
+
 def _have_common(one: str, other: str) -> bool:
     """Return whether two patterns have a file in common."""
     if "#" not in one + other:
-        return one.casefold() == other.casefold()
+        return _folded(one) == _folded(other)
     parts = [re.split(r"(?<!\[)#|#(?!\])", pattern) for pattern in (one, other)]  # at numbers, not at [#]
     mixed = (f"{head[0]}#{tail[-1]}" for head, tail in product(parts, parts))
     regexes = [rule_regex([pattern]) for pattern in (one, other)]

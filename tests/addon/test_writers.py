@@ -12,6 +12,7 @@ from blender_addon.work.job import ApplyMode
 from crfnet.errors import ConfigError, PlateError
 from crfnet.luts.files import WRITERS, read_lut
 from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.rgb_lut import lut_identity
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed, tree
@@ -103,7 +104,8 @@ def test_an_export_is_that_of_the_command_and_built_on_the_running_config_which_
     exported = write(make_job(mode=ApplyMode.EXPORT))
     folder = exported.config.parent
     assert folder == tmp_path / "out"
-    assert set(listed(folder)) == {"config.ocio", *(f"plate{suffix}" for suffix in WRITERS)}
+    own = f"plate ({lut_identity(LUT)[-8:]}).spi1d"  # of the config
+    assert set(listed(folder)) == {"config.ocio", own, *(f"plate{suffix}" for suffix in WRITERS)}
     assert sorted(exported.files) == sorted(folder.iterdir())
     for suffix in WRITERS:
         np.testing.assert_array_equal(read_lut(folder / f"plate{suffix}").values, LUT.values)

@@ -41,7 +41,7 @@ def test_a_dpx_that_is_neither(addon, tmp_path, codes):
 def test_linear_files_are_refused_and_no_choice_is_offered_that_is_no_help(addon, tmp_path):
     image = load(write_image(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32)))
     for force in (False, True):
-        with pytest.raises(RuntimeError, match="OpenEXR holds scene-linear values") as problem:
+        with pytest.raises(RuntimeError, match="whose values are scene-linear as a rule") as problem:
             bpy.ops.crf.estimate_response(image=image.name, force=force)
         assert "Estimate Anyway" not in str(problem.value)
 

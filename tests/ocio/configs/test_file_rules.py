@@ -152,9 +152,15 @@ def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
     assert two.without_rule == ("größe.png",)
 
 
-@pytest.mark.parametrize(("other", "is_shared"), [("v20001.png", True), ("v#3.png", True), ("v1#.png", False)])
-def test_patterns_are_shared_that_have_a_file_in_common(other, is_shared):
-    claims = [FileClaim("a", "ACEScct", ("v2#.png",)), FileClaim("b", "sRGB", (other,))]
+@pytest.mark.parametrize(
+    ("one", "other", "is_shared"),
+    [
+        *(("v2#.png", "v20001.png", True), ("v2#.png", "v#3.png", True), ("v2#.png", "v1#.png", False)),
+        ("KAPI.jpg", "kap\u0131.jpg", True),  # I is the upper case of both letters
+    ],
+)
+def test_patterns_are_shared_that_have_a_file_in_common(one, other, is_shared):
+    claims = [FileClaim("a", "ACEScct", (one,)), FileClaim("b", "sRGB", (other,))]
     assert bool(add_file_rules(portable_config([]), claims)) == is_shared
 
 
