@@ -14,6 +14,7 @@ from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError, PlateError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.rgb_lut import lut_identity
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed, tree
@@ -145,6 +146,23 @@ class TestBase:
         assert_same(conversions(result), conversions(loaded(tmp_path / "show" / "config.ocio")))
         with refused(ConfigError, "base_would_change"):
             add(tmp_path / "show" / "config.ocio", studio.parent, small_look)
+
+    @pytest.mark.parametrize("name", ["film", "FILM"])
+    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance, name):
+        """The plate's LUT would be called film.spi1d, like one of the base, for systems that compare without case."""
+        studio.write_text(studio.read_text().replace("$SHOW/", ""))
+        done = add(studio, tmp_path / "new", write_look(tmp_path / "look", [f"{name}.jpg"]))
+        assert set(listed(tmp_path / "new")) == {"config.ocio", f"{name} ({lut_identity(LUT)[-8:]}).spi1d"}
+        result = loaded(done.path)
+        assert_same(conversions(result), conversions(loaded(studio)))
+        light = converted(result, f"CRF {name}", "scene_linear", CODES)
+        np.testing.assert_allclose(light, LUT.apply(CODES), atol=tolerance.plate)
+
+    @pytest.mark.parametrize("name", ["plate01.spi1d", "sub/PLATE01.spi1d"])
+    def test_a_lut_that_the_base_misses_is_not_found_in_a_plates(self, studio, small_look, tmp_path, name):
+        studio.write_text(studio.read_text().replace("$SHOW/", "").replace("film.spi1d", name))
+        own = f"plate01 ({lut_identity(LUT)[-8:]}).spi1d"
+        assert listed(add(studio, tmp_path / "new", small_look).path.parent)[1] == own
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
         config = OCIO.Config.CreateRaw()
