@@ -70,6 +70,7 @@ def remove_abandoned(folder: Path) -> None:
                 continue
             if not (temporary / _LOCK).exists():
                 temporary.rmdir()  # of a run killed before it locked a file; with content, it is somebody else's
+                continue
             with (temporary / _LOCK).open("rb+") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
                 if not _is_there(file, temporary):

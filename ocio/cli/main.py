@@ -86,8 +86,8 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
         given = vars(arguments)
         alone = set(map(Path, given.get("photos", given.get("plates", ())))) if given.get("each") else set()
         for text in argv:
-            if Path(text) not in alone and escaped_name(text) != text:
-                raise CommandError("name_not_unicode", name=escaped_name(text))
+            if Path(text) not in alone and (name := escaped_name(text)) != text:
+                raise CommandError("name_not_unicode", name=name)
         code = import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError, RuntimeError) as problem:
