@@ -46,7 +46,7 @@ test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as
 fuzz: $(TEST)/ready  ## damaged files for an hour (SECONDS_EACH=400 of every test), before a release
 	CRFNET_FUZZ_SECONDS=$(SECONDS_EACH) $(TEST)/bin/python -m pytest tests/fuzz
 
-faults: $(TEST)/ready  ## every write, fsync, close and rename fails once: EIO, ENOSPC, short, SIGKILL (half an hour)
+faults: $(TEST)/ready  ## every write, fsync, close, rename and removal fails once: EIO, ENOSPC, short, SIGKILL (half an hour)
 	$(TEST)/bin/python -m tests.faults
 
 test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)

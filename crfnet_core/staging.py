@@ -185,10 +185,15 @@ def _has_name(path: Path, folder: Path) -> bool:
 def _name_the_rest(temporary: Path, folder: Path) -> None:
     """Give the files of a set of which some have their names the others, where they are free."""
     files = [path for path in _staged(temporary) if not _has_name(path, folder)]
-    if any(len(files) < int(earlier.name.removeprefix(_EARLIER)) for earlier in temporary.glob(f"{_EARLIER}*")):
+    if any(len(files) < int(earlier.name.removeprefix(_EARLIER)) for earlier in _earlier(temporary)):
         for path in files:
             if not os.path.lexists(folder / path.name):
                 path.replace(folder / path.name)
+
+
+def _earlier(temporary: Path) -> list[Path]:
+    """Return the folders of replaced files; a link may have come with a folder that somebody has unpacked."""
+    return [path for path in temporary.glob(f"{_EARLIER}*") if is_own_folder(path)]
 
 
 def _staged(temporary: Path) -> list[Path]:
@@ -215,13 +220,20 @@ def _flush(path: Path) -> None:
 
 
 def _remove(temporary: Path, folder: Path) -> None:
-    """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays."""
-    with suppress(OSError):  # of a run that removes it, too, or of closing, which `ignore_errors` does not ignore
-        for path in temporary.glob(f"{_EARLIER}*/*"):
-            with suppress(OSError):
-                if os.path.lexists(folder / path.name):
-                    path.unlink()
-                else:
-                    path.replace(folder / path.name)
-        if not any(temporary.glob(f"{_EARLIER}*/*")):
-            shutil.rmtree(temporary, ignore_errors=True)
+    """Remove a temporary folder after its earlier files have gone back where their names are free, or it stays.
+
+    The folders of earlier files, which make a set one to complete, go first, and the lock goes last: a folder without
+    it is not known to be ours.
+    """
+    with suppress(OSError):  # of a run that removes it, too, or of an earlier file that cannot go back
+        for earlier in _earlier(temporary):
+            for path in earlier.iterdir():
+                with suppress(OSError):
+                    if os.path.lexists(folder / path.name):
+                        path.unlink()
+                    else:
+                        path.replace(folder / path.name)
+            earlier.rmdir()
+        for path in _staged(temporary):
+            path.unlink()
+        shutil.rmtree(temporary)

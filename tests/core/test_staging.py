@@ -184,6 +184,17 @@ def test_nothing_of_others_is_taken_for_the_folder_of_a_killed_run(tmp_path, sec
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs links")
+def test_a_link_in_a_folder_of_ours_is_not_followed(tmp_path, secret):
+    """An archive that somebody delivers may hold a temporary folder, which becomes the user's own when unpacked."""
+    left_by_a_killed_run(tmp_path, "a", "b")
+    (tmp_path / ".crfnet-killed" / ".crfnet-earlier-1").symlink_to(secret)
+    (tmp_path / "key").write_text("mine")
+    remove_abandoned(tmp_path)
+    assert content(secret) == {"key": "secret"}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "elsewhere", "key"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs links")
 def test_a_folder_that_others_have_put_in_the_place_of_the_temporary_one_is_left_alone(tmp_path, secret):
     (tmp_path / "out").mkdir()
 

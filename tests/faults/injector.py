@@ -1,4 +1,4 @@
-"""Let one call of Python fail: write, fsync, close, link or rename below a folder, or the last page of an EXR."""
+"""Let one call of Python fail, such as write, fsync, rename or unlink below a folder, or the last page of an EXR."""
 
 import builtins
 import io
@@ -33,7 +33,7 @@ class Injector:
 
     def install(self):
         """Replace the calls in this process, for good."""
-        for name in ("fsync", "close", "link", "rename", "replace"):
+        for name in ("fsync", "close", "link", "rename", "replace", "mkdir", "unlink", "rmdir"):
             setattr(os, name, self._counted(name, getattr(os, name)))
         opened, create = io.open, oiio.ImageOutput.create
 
@@ -50,7 +50,8 @@ class Injector:
 
     def _counted(self, name, real):
         def call(first, *arguments, **options):
-            link = f"/proc/self/fd/{first}"
+            descriptor = first if options.get("dir_fd") is None else options["dir_fd"]  # the folder's, in `rmtree`
+            link = f"/proc/self/fd/{descriptor}"
             try:
                 self.count(name, Path(link).readlink() if os.path.lexists(link) else first)
             except OSError:
