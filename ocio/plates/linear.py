@@ -116,7 +116,13 @@ def linearize_plates(
             show_progress(progress, done, len(targets))
     if failures:
         raise _failure(failures, targets, sequence)
-    check_finished(((target, plate_of(pending[target])) for target in elsewhere), light, options.depth)
+    plates = conversion.plates | {target: plate_of(pending[target]) for target in elsewhere}
+    try:
+        check_finished(plates.items(), light, options.depth)
+    except PlateError as problem:
+        if not options.overwrite:
+            raise
+        raise PlateError("written_meanwhile", path=problem.facts["path"]) from problem
     written = tuple(target for target in pending if target not in elsewhere)
     clipped = float(np.mean([*conversion.clipped.values()] or [0.0]))
     return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light, clipped)
@@ -131,18 +137,21 @@ class _Conversion:
     options: PlateOptions
     first: FirstFrame | None
     plate_of: Callable[[int], str]
-    clipped: dict[Path, float] = field(default_factory=dict)  # the share outside the LUT, of each file written
+    plates: dict[Path, str] = field(default_factory=dict)  # the identity of the plate of each file written
+    clipped: dict[Path, float] = field(default_factory=dict)  # the share outside the LUT, of the same
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
         frame = self._read(position, path, load)
         pixels = self._linear_pixels(frame)
-        attributes, depth = {**self.light.attributes, PLATE: self.plate_of(position)}, self.options.depth
+        plate, depth = self.plate_of(position), self.options.depth
+        attributes = {**self.light.attributes, PLATE: plate}
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
         low, high = self.light.lut.domain
         is_coded = frame.samples.dtype.kind == "u"
+        self.plates[target] = plate
         self.clipped[target] = 0.0 if is_coded else float(np.mean((frame.samples < low) | (frame.samples > high)))
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:

@@ -85,6 +85,19 @@ def test_frames_that_another_process_finishes_meanwhile_are_left_alone_or_refuse
         linearize(pattern, out / "a_####.exr", LUT, progress=appear)
 
 
+def test_a_run_that_replaces_frames_says_when_another_has_replaced_one_of_its_own(tmp_path, out):
+    pattern, targets = write_sequence(tmp_path, (1, 2)), out / "a_####.exr"
+    linearize(pattern, tmp_path / "other_####.exr", Lut1D([0, 0.1, 1]))
+
+    def replace(done, total):
+        if done == total:
+            shutil.copy(tmp_path / "other_0001.exr", out / "a_0001.exr")
+
+    with refused(PlateError, "written_meanwhile", path=out / "a_0001.exr"):
+        linearize(pattern, targets, LUT, overwrite=True, progress=replace)
+    linearize(pattern, targets, LUT, overwrite=True)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 @pytest.mark.parametrize("stop", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop):
