@@ -31,15 +31,33 @@ class Command:
     """A command: its arguments for an output folder, and how it goes on.
 
     `is_set`: its files appear together, and after SIGKILL it may need --overwrite. `growing`: files that it changes.
+    `earlier`: the folder of inputs with the files that are there at the start.
     """
 
     arguments: Callable[[Path, Path], list[object]]
     is_set: bool = True
     growing: tuple[str, ...] = ()
+    earlier: str = ""
 
 
 COMMANDS = {
     "estimate": Command(lambda inputs, out: ["estimate", inputs / "a.1.jpg", "--no-sheet", *MODEL, "--out", out]),
+    "estimate --overwrite": Command(
+        lambda inputs, out: [
+            *(
+                "estimate",
+                inputs / "a.1.jpg",
+                "--no-sheet",
+                *MODEL,
+                "--taken-with",
+                "phone",
+                "--overwrite",
+                "--out",
+                out,
+            )
+        ],
+        earlier="look",
+    ),
     "calibrate": Command(
         lambda inputs, out: ["calibrate", *sorted(inputs.glob("stack/*")), "--no-sheet", "--name", "cam", "--out", out]
     ),
@@ -96,14 +114,15 @@ def problem_of(command, inputs, out, expected, fault, call):
     arguments = command.arguments(inputs, out)
     code, stderr, _ = run(arguments, out, Injector(out, call=call, fault=fault))
     found, first = final_files(out, command.growing), final_files(expected, command.growing)
-    if not found.items() <= first.items():
+    earlier = final_files(inputs / command.earlier) if command.earlier else {}
+    if any(content not in (first.get(name), earlier.get(name)) for name, content in found.items()):
         return "a damaged file"
     if code == 0 and found != first:
         return "exit code 0 without all files"
     if fault is not None and code != 0 and (code != 2 or stderr.count("\n") != 1):
         return f"exit code {code}, stderr {stderr!r}"
-    if code == 2 and command.is_set and found:
-        return f"files are left: {', '.join(found)}"
+    if code == 2 and command.is_set and found != earlier:
+        return f"files are left, or earlier ones gone: {', '.join(found)}"
     again, stderr, _ = run([*arguments, *(["--overwrite"] if command.is_set and found else [])], out)
     if again or final_files(out, command.growing[:1]) != final_files(expected, command.growing[:1]):
         return f"the next run ends with {again}, {stderr!r}"
@@ -123,17 +142,25 @@ def prepare(inputs):
         assert code == 0, stderr
 
 
+def prepared(command, inputs, out):
+    """Return an output folder, which is absent or holds earlier files."""
+    out.parent.mkdir(parents=True)
+    if command.earlier:
+        shutil.copytree(inputs / command.earlier, out)
+    return out
+
+
 def failures(name, inputs, folder, most):
     """Yield the failures of `most` cases of a command, evenly over all (0: all), and in the end their number."""
     command = COMMANDS[name]
-    (clean := folder / "clean" / "out").parent.mkdir(parents=True)
+    clean = prepared(command, inputs, folder / "clean" / "out")
     code, stderr, calls = run(command.arguments(inputs, clean), clean, Injector(clean))
     assert code == 0, stderr
     numbered = [(call, 1 + calls[:number].count(call)) for number, call in enumerate(calls)]
     cases = [(call, fault) for call in numbered for fault in FAULTS if fault != "SHORT" or call[0] == "write"]
     chosen = cases[:: max(1, len(cases) // most) if most else 1]
     for case, (call, fault) in enumerate(chosen):
-        (out := folder / str(case) / "out").parent.mkdir()
+        out = prepared(command, inputs, folder / str(case) / "out")
         if problem := problem_of(command, inputs, out, clean, FAULTS[fault], call):
             yield f"{name}: {fault} at {call[0]} {call[1]}: {problem}"
         shutil.rmtree(out.parent)

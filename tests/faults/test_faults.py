@@ -11,4 +11,4 @@ from tests.helpers.processes import ran
 def test_a_call_that_fails_leaves_whole_files_or_none(root):
     done = ran(sys.executable, "-m", "tests.faults", "--most", "4", cwd=root, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.count(" cases\n") == 6
+    assert done.stdout.count(" cases\n") == 7
