@@ -182,6 +182,15 @@ class ResponseCurve(EqualByFields):
         return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
 
 
+def are_undivided_codes(values: NDArray[np.floating], last: float = 1.0) -> bool:
+    """Return whether numbers are codes: most exceed `MOST_BRIGHTNESS` times `last`, or some do and all are whole.
+
+    Some exceed it in sound pictures, too, such as at edges of colors that were divided by alpha.
+    """
+    above = np.count_nonzero(values > MOST_BRIGHTNESS * last)
+    return bool(2 * above > values.size or (above and (values == np.rint(values)).all()))
+
+
 def numbers_of(values: ArrayLike, error: type[CRFNetError]) -> NDArray[Any]:
     """Return values as an array; raise `error` if they are not numbers, not all there, or in rows of unequal length."""
     try:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import check_kinds
-from crfnet_core.response.curve import BLOCK, MOST_BRIGHTNESS, ResponseCurve, is_codes, numbers_of
+from crfnet_core.response.curve import BLOCK, ResponseCurve, are_undivided_codes, is_codes, numbers_of
 from crfnet_core.types import EqualByFields, Float64Array, is_number
 
 from ..defaults import LUT_LENGTH
@@ -96,11 +96,11 @@ class Lut1D(EqualByFields):
         ------
         LutError
             If pixels have alpha; if code values are given, which have to be divided: unsigned integers, or integers
-            beyond the domain and above 1; or numbers of which most lie above `MOST_BRIGHTNESS` times its end.
+            beyond the domain and above 1; or numbers as in `are_undivided_codes`.
         """
         last = max(self.domain[1], 1)
         inputs = _floating(pixels, last=last)
-        if 2 * np.count_nonzero(inputs > MOST_BRIGHTNESS * last) > inputs.size:
+        if are_undivided_codes(inputs, last):
             raise LutError("lut_codes", largest=float(np.fmax.reduce(inputs, axis=None)), last=last)
         outputs = np.empty(inputs.shape, inputs.dtype)
         values = self.values.astype(inputs.dtype)

@@ -15,7 +15,7 @@ from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message
 from crfnet_core.photograph.image_io.header_checks import channel_names, text_attribute
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
-from crfnet_core.response.curve import MOST_BRIGHTNESS
+from crfnet_core.response.curve import MOST_BRIGHTNESS, are_undivided_codes
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
@@ -138,7 +138,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     with _opened_exr(path, is_encoded=is_encoded) as source:
         header = source.spec()
         channels = _color_channels(header)
-        part, needed = source.current_subimage(), {*channels, header.alpha_channel} - {-1}  # others may be many
+        part, needed = source.current_subimage(), {*channels, *_alpha_channel(header)}  # others may be many
         planes = {channel: source.read_image(part, 0, channel, channel + 1, "float") for channel in needed}
         problem = oiio_message(source)
     if problem or any(plane is None for plane in planes.values()):
@@ -146,9 +146,9 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     if faulty := np.count_nonzero(np.any([~np.isfinite(plane) for plane in planes.values()], axis=0)):
         raise PlateError("exr_not_finite", path=path, count=faulty)
     samples = np.concatenate([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
-    if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
+    if are_undivided_codes(samples):
         raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
-    alpha = planes.get(header.alpha_channel)  # (H, W, 1)
+    alpha = next((planes[channel] for channel in _alpha_channel(header)), None)  # (H, W, 1)
     if alpha is not None and is_divided:
         samples = np.divide(samples, alpha, out=np.zeros_like(samples), where=alpha != 0)
     coverage = None if alpha is None else alpha[..., 0]
@@ -164,6 +164,11 @@ def _color_channels(header: Any) -> list[int]:
     return [names.index(min(colors))] * 3 if colors in GRAY else []
 
 
+def _alpha_channel(header: Any) -> list[int]:
+    """Return the channel of alpha, or none; OpenImageIO takes that of any layer for it, such as a matte's."""
+    return [number for number, name in enumerate(channel_names(header)) if name == "A"]
+
+
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     """Refuse an OpenEXR file that is or may be linear, is too large or deep, or holds no RGB or gray picture."""
     space = text_attribute(header, "colorInteropID")
@@ -173,7 +178,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         size = {"width": header.width, "height": header.height, "channels": header.nchannels}
         raise PlateError("exr_samples", path=path, **size)
     channels = _color_channels(header)
-    kinds = {str(header.channelformat(channel)) for channel in {*channels, header.alpha_channel} - {-1}}
+    kinds = {str(header.channelformat(channel)) for channel in (*channels, *_alpha_channel(header))}
     if header.deep or not channels or not kinds <= {"half", "float"}:
         raise PlateError("exr_channels", path=path, channels=", ".join(channel_names(header)))
     if not ENCODED.fullmatch(space) and not is_encoded:

@@ -170,7 +170,7 @@ def test_a_lut_may_reach_beyond_all_brightness(true_response):
     np.testing.assert_allclose(np.diff(far.values[1:]), far.values[2] - far.values[1], rtol=1e-6)
 
 
-@pytest.mark.parametrize("codes", [np.linspace(0, 255, 9, dtype=np.float32), [np.nan, 3, 4, 0.5, 9]])
+@pytest.mark.parametrize("codes", [np.linspace(0, 255, 9, dtype=np.float32), [np.nan, 3, 4, 0.5, 9], [0.0, 0, 0, 9]])
 def test_floating_point_codes_are_refused_and_light_has_no_bound(true_response, codes):
     lut = inverse_response_lut(true_response, domain=(-0.125, 1.125))
     with refused(LutError, "lut_codes"):

@@ -28,6 +28,14 @@ def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
     np.testing.assert_array_equal(frame.alpha, np.float32([[0.5, 0, 1]]))
 
 
+def test_the_alpha_of_another_layer_is_not_that_of_the_picture(tmp_path):
+    """OpenImageIO takes it for alpha; a matte would blacken the plate."""
+    values = np.array([[[0.25, 0.5, 0.75, 0.0]]])
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "mask.A")), is_encoded=True)
+    np.testing.assert_array_equal(frame.samples, np.float32(values[..., :3]))
+    assert frame.alpha is None
+
+
 @pytest.mark.parametrize("channels", [("Y",), ("R",), ("Y", "A")])
 def test_gray_encoded_exr_is_replicated(tmp_path, channels):
     values = np.array([[[0.25, 1.0][: len(channels)]]])
