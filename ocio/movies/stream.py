@@ -275,7 +275,7 @@ def _filters(frame: VideoFrame, codes: ColorCodes) -> tuple[str, ...]:
 
 
 def _turn(path: Path, frame: VideoFrame) -> Turn:
-    """Return the turn of the display matrix; as stored for other angles than quarter turns."""
+    """Return the turn of the display matrix, upright for one that enlarges; refuse other angles than quarter turns."""
     try:
         matrix: Any = frame.side_data.get("DISPLAYMATRIX")
     except ValueError:  # of side data that PyAV does not know, such as EXIF; it still gives the angle
@@ -287,4 +287,8 @@ def _turn(path: Path, frame: VideoFrame) -> Turn:
     values = np.frombuffer(matrix, np.int32)[[0, 1, 3, 4]] / 65536
     a, b, c, d = (round(float(value)) for value in values)
     is_turn = abs(a * d - b * c) == abs(a) + abs(b) == abs(c) + abs(d) == 1
-    return (a, b, c, d) if is_turn and np.allclose(values, (a, b, c, d), atol=0.01) else UPRIGHT
+    if is_turn and np.allclose(values, (a, b, c, d), atol=0.01):
+        return a, b, c, d
+    if np.abs(values[1:3]).max() > 0.01:
+        raise undecodable(path, "its frames are turned by other angles than quarter turns")
+    return UPRIGHT

@@ -275,6 +275,11 @@ def test_frames_are_upright_and_say_so(tmp_path, degrees, quarters):
     np.testing.assert_array_equal(frame.samples, np.rot90(next(stored.loaders([0]))().samples, quarters))
 
 
+def test_frames_that_are_turned_by_another_angle_are_refused(tmp_path):
+    turned = write_movie(tmp_path / "a.mov", count=1, codec="qtrle", form="rgb24", degrees=45)
+    assert refusal_of(PlateError, MovieFrames.find, turned).code == "movie_undecodable"
+
+
 def test_alpha_is_kept(tmp_path):
     path = write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuva444p10le", options={"profile": "4444"})
     frames = MovieFrames.find(path)
