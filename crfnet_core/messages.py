@@ -122,8 +122,9 @@ SENTENCES: Mapping[str, str] = {
     " pictures",
     "few_levels_advice": "give a photograph with all its levels",
     "mostly_ends": "more than half of all samples are exactly black or white, as in mattes, and no camera is named",
-    "flat_frame": "a flat frame: its brightness has no range, so no response shows",
-    "flat_frame_advice": "give a photograph with dark and bright parts",
+    "flat_frame": "a flat frame: its brightness lies between codes {low} and {high} of 255, so too little of the"
+    " response shows",
+    "flat_frame_advice": "give a photograph with dark and bright parts, whose white is the largest code",
     "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
     "noise_frame_advice": "give a photograph of a scene",
     "limited_range": "probably limited range stored as full: hardly a code lies beyond 16 and 235 of 255, which are"

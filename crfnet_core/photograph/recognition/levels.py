@@ -20,10 +20,6 @@ LUMA = np.array([0.299, 0.587, 0.114], np.float32)  # of R, G, B, as in JPEG and
 #: nothing is averaged. Rows of samples counted at a time.
 BINS, MOST_SAMPLES, ROWS = 1024, 3_000_000, 64
 
-#: Range of luma below which a picture is flat: 16 codes of 255, as black frames, gray cards without noise, and files of
-#: 16 bits whose codes end where 12 bits do have it.
-FLAT_RANGE = 16.5 / 255
-
 #: Codes of 8 bits beyond black of limited range (16, ITU-R BT.709, item 6), near it and next to it; the same of white.
 BLACK_BANDS, WHITE_BANDS = ((0, 12.5), (13, 19), (19.5, 26.5)), ((238.5, 255), (232, 238), (224.5, 231.5))
 
@@ -71,9 +67,9 @@ class Levels:
         )
 
     @property
-    def is_flat(self) -> bool:
-        """Whether luma has no range to speak of, so that no response shows."""
-        return quantile(self.luma, 1 - BLACK) - quantile(self.luma, BLACK) < FLAT_RANGE
+    def luma_ends(self) -> tuple[float, float]:
+        """The brightness between which nearly all luma lies."""
+        return quantile(self.luma, BLACK), quantile(self.luma, 1 - BLACK)
 
     @property
     def black(self) -> float:
@@ -104,7 +100,9 @@ def is_mostly_ends(levels: Levels) -> bool:
 
 def is_limited_range(levels: Levels) -> bool:
     """Return whether a picture has the histogram of limited range: Eq. L.2; of 104 real photographs none has."""
-    samples, luma = map(_ends, (levels.histogram, levels.luma))
+    samples, luma = levels.histogram / levels.histogram.sum(), levels.luma / levels.luma.sum()
+    bars = luma * (np.arange(BINS) == 0)  # of pure black, which may have been added later
+    samples, luma = map(_ends, (samples - bars, luma - bars))
     # hardly a sample lies outside the codes 16 to 235, and they reach both and pile up at one
     is_reached = all(near >= LEAST_AT_END and beyond <= min(near, MOST_OUTSIDE) for beyond, near, _ in samples)
     if is_reached and any(near > inside for _, near, inside in samples):
@@ -126,9 +124,9 @@ def _unevenness(histogram: Float64Array, bins: int) -> float:
 
 
 def _ends(histogram: Float64Array) -> list[list[float]]:
-    """Return the fractions of the samples in each of `BLACK_BANDS` and of `WHITE_BANDS`, whose ends are included."""
+    """Return the parts of a histogram in each of `BLACK_BANDS` and of `WHITE_BANDS`, whose ends are included."""
     edges = np.rint(np.array((BLACK_BANDS, WHITE_BANDS)) / 255 * (BINS - 1)).astype(int)
-    return [[float(histogram[low : high + 1].sum() / histogram.sum()) for low, high in bands] for bands in edges]
+    return [[float(histogram[low : high + 1].sum()) for low, high in bands] for bands in edges]
 
 
 def _histogram(samples: Float32Array) -> Float64Array:

@@ -17,6 +17,11 @@ from crfnet_core.response.log_curves import COLOR_SPACES
 
 RECOGNIZED = 0.5  # probability of log footage above which it counts as recognized
 
+#: Range of luma below which a picture is flat, whatever else it is: 16 codes of 255, as black frames and gray cards
+#: without noise; and below which too little of the response shows: files of 16 bits with white at 16384 or 32768 have
+#: at most half. The least of 151 real photographs and crops is 0.83.
+FLAT_RANGE, NARROW_RANGE = 16.5 / 255, 0.51
+
 #: Encoding by the name that tags give it -> color space of OpenColorIO's ACES studio config.
 TAGGED_SPACES = COLOR_SPACES | {"HLG": "Rec.2100-HLG - Display", "PQ": "Rec.2100-PQ - Display"}
 
@@ -58,8 +63,10 @@ def recognize(
 
     `log_probability` counts the levels by `log_factor`; `is_noise`: whether none shows a scene; `makes`: in the files.
     """
-    if levels.is_flat:
-        return _recognized(Kind.FLAT, "flat_frame", "flat_frame_advice")
+    low, high = levels.luma_ends
+    flat = _recognized(Kind.FLAT, "flat_frame", "flat_frame_advice", low=round(255 * low), high=round(255 * high))
+    if high - low < FLAT_RANGE:
+        return flat
     if is_noise:
         return _recognized(Kind.FLAT, "noise_frame", "noise_frame_advice")
     if is_limited_range(levels):
@@ -77,7 +84,7 @@ def recognize(
             return _recognized(Kind.THERMAL, "thermal", "thermal_advice", camera=origin.camera)
         if origin.is_sent_copy:
             return _recognized(Kind.SENT_COPY, "sent_copy", "sent_copy_advice", quality=origin.jpeg_quality)
-    return None
+    return flat if high - low < NARROW_RANGE else None
 
 
 def refuse_tagged(photo: Photo) -> None:

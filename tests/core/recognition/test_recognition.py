@@ -118,6 +118,8 @@ def test_limited_range_is_recognized_and_the_full_range_is_not(seed, bits):
     limited = quantized((16 + 219 * full.astype(float)) * 2 ** (bits - 8) / (2**bits - 1), bits)
     assert is_limited_range(Levels.from_pixels(limited))
     assert not is_limited_range(Levels.from_pixels(full))
+    bars = [(len(full) // 4, 0), (0, 0), (0, 0)]  # of pure black
+    assert [is_limited_range(Levels.from_pixels(np.pad(each, bars))) for each in (limited, full)] == [True, False]
     assert recognize(Levels.from_pixels(limited), log_probability=0.0).kind is Kind.LIMITED_RANGE
 
 
@@ -213,9 +215,12 @@ def test_a_flat_frame_is_recognized_and_advised_other_than_noise(codes):
     assert (flat.kind, noise.kind, flat.advice == noise.advice) == (Kind.FLAT, Kind.FLAT, False)
 
 
-def test_twelve_bits_in_a_file_of_sixteen_are_recognized():
-    codes = np.random.default_rng(0).integers(0, 4096, (64, 64, 3))
-    assert recognize(Levels.from_pixels(np.float32(codes / 65535)), log_probability=0).kind is Kind.FLAT
+@pytest.mark.parametrize(("white", "kind"), [(4095, Kind.FLAT), (16383, Kind.FLAT), (32768, Kind.FLAT), (39000, None)])
+def test_a_white_far_below_the_largest_code_is_recognized(white, kind):
+    recognition = recognize(Levels.from_pixels(quantized(ordinary_picture() * (white / 65535), 16)), log_probability=0)
+    assert (recognition and recognition.kind) is kind
+    if kind:
+        assert f"between codes 0 and {round(255 * white / 65535)} of 255" in recognition.reason
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 12, 40])
