@@ -143,8 +143,8 @@ def test_words_of_a_camera():
     assert scan.words == ("taken by KODAK F-135 Plus, a scanner of film or paper",)
     assert origin(make="FLIR", model="T640", width=640, height=480).words == ("taken by FLIR T640, a thermal camera",)
     assert origin(**OWN_CAMERA).words[0] == "taken by Canon EOS 20D, a camera with interchangeable lenses"
-    assert origin(**OWN_CAMERA, exif_size=(3520, 2346)).words[1] == "the file is as the camera wrote it"
-    cut = "cropped from 4000 x 3001 to 3504 x 2336 pixels, but not encoded again"
+    assert origin(**OWN_CAMERA, exif_size=(3520, 2346)).words[1] == "nothing shows that a program wrote the file"
+    cut = "cropped from 4000 x 3001 to 3504 x 2336 pixels"
     assert origin(**OWN_CAMERA, exif_size=(4000, 3001)).words[1] == cut
 
 

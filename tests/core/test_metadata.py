@@ -60,7 +60,7 @@ def test_a_jpeg_as_a_camera_writes_it(tmp_path):
     assert (origin.is_resaved, origin.is_scaled, origin.jpeg_quality) == (False, False, None)
     assert origin.words == (
         "taken by Canon EOS 20D, a camera with interchangeable lenses",
-        "the file is as the camera wrote it",
+        "nothing shows that a program wrote the file",
     )
 
 

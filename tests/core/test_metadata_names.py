@@ -9,6 +9,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         **{"Apple": ("iPhone 13 Pro",), "LGE": ("Nexus 5",), "Panasonic": ("DMC-CM1",), "KYOCERA": ("KYV47",)},
         **{"samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70")},
         **{"Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"), "Sony Ericsson": ("LT26i",)},
+        **{"Google": ("Pixel 4",), "KODAK": ("EKTRA",), "CASIO": ("CA007",), "LG Electronics": ("LG-H870",)},
     },
     Device.COMPACT: {
         **{"CASIO COMPUTER CO.,LTD.": ("EX-Z750",), "Canon": ("Canon DIGITAL IXUS 60", "Canon PowerShot G7")},
@@ -19,7 +20,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         **{"OLYMPUS OPTICAL CO.,LTD": ("E-20,E-20N,E-20P",), "Panasonic": ("DC-TZ90", "DMC-LC1", "DMC-LX7")},
         **{"PENTAX Corporation": ("PENTAX Optio S4",), "RICOH IMAGING COMPANY, LTD.": ("RICOH GR III",)},
         **{"RICOH      ": ("Caplio GX100   ",), "SAMSUNG": ("EX2F ", "WB150F"), "SIGMA": ("SIGMA DP2 Merrill",)},
-        **{"SONY": ("DSC-RX100M3", "ZV-1"), "Minolta Co., Ltd.": ("DiMAGE 7i",)},
+        **{"SONY": ("DSC-RX100M3", "ZV-1"), "Minolta Co., Ltd.": ("DiMAGE 7i",), "Apple": ("QuickTake 150",)},
     },
     Device.CAMERA: {
         **{"Canon": ("Canon EOS 350D DIGITAL", "Canon EOS R5", "Canon EOS-1D X")},
@@ -35,11 +36,16 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         **{"Nikon": ("SUPER COOLSCAN 5000 ED",), "NORITSU KOKI": ("QSS-32_33",), "FUJIFILM": ("SP-3000",)},
         **{"EPSON": ("Perfection V700",), "Canon": ("CanoScan 9000F",), "Hewlett-Packard": ("HP Scanjet G4050",)},
         **{"Hasselblad": ("Flextight X5",), "FUJITSU": ("ScanSnap iX500",), "HP": ("Officejet 6600",)},
-        **{"Samsung": ("M2070 Series",), "KONICA MINOLTA": ("bizhub C364e", "DiMAGE Scan Dual4")},
+        **{
+            "Samsung": ("M2070 Series",),
+            "Kodak": ("i2600", "HR 500"),
+            "KONICA MINOLTA": ("bizhub C364e", "DiMAGE Scan Dual4"),
+        },
     },
     Device.UNKNOWN: {
         **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "NIKON": ("KeyMission 170",)},
         **{"Canon": ("Canon LEGRIA HF R86", "Canon EOS C70"), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
+        **{"Google": ("Street View",), "LGE": ("LG-R105",)},
     },
 }
 
@@ -67,7 +73,7 @@ def test_the_makers_name_is_said_once(make, model, name):
 EDITORS = (
     *("Adobe Photoshop CS6 (Windows)", "Capture One 20 Windows", "DxO PhotoLab 4.0", "easyHDR 3.13", "GIMP 2.10.8"),
     *("Google", "Photos 3.0", "SIGMA Photo Pro 5.5", "Windows Photo Editor 10.0.10011.16384", "paint.net 4.2"),
-    "Siril 1.2.4",
+    *("Siril 1.2.4", "Samsung Photo Editor", "PhotoNinja 1.4"),
 )
 
 #: Firmware, and a viewer.

@@ -25,8 +25,8 @@ _PHONE, _COMPACT, _CAMERA, _SCANNER, _THERMAL, _UNKNOWN = Device
 #: Phones include tablets, cameras digital backs; behind a scanner, the photograph is on film or paper.
 MAKERS = {
     Device.PHONE: (
-        *("apple", "iphone", "ipad", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus"),
-        *("motorola", "lg", "lge", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion"),
+        *("iphone", "ipad", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus"),
+        *("motorola", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion"),
         *("zte", "nubia", "lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm"),
         *("essential", "fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee"),
         *("oppo", "realme", "vivo", "iqoo", "asustek", "tct", "cat", "caterpillar", "oukitel", "cubot", "hisense"),
@@ -41,7 +41,7 @@ MAKERS = {
         *("optris", "workswell", "topdon"),
     ),
     Device.COMPACT: (
-        *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "agfaphoto"),
+        *("vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "agfaphoto"),
         *("general imaging", "ge", "gedsc", "toshiba", "sanyo", "traveler", "aiptek", "praktica"),
     ),
     Device.CAMERA: ("phase one", "leaf", "mamiya", "pixii", "zenit"),
@@ -52,6 +52,10 @@ _SCANNER_MODEL = r"scan|(office|desk|laser|page)jet|\b(mfc|dcp|fi|kv|scx)-|serie
 
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
 PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
+    "apple": ((r"quicktake", _COMPACT), (r"", _PHONE)),
+    "google": ((r"street view", _UNKNOWN), (r"", _PHONE)),
+    "lg": ((r"r105", _UNKNOWN), (r"", _PHONE)),
+    "casio": ((r"ca\d", _PHONE), (r"", _COMPACT)),
     "canon": (
         (r"eos c\d", _UNKNOWN),
         (r"eos", _CAMERA),
@@ -86,7 +90,8 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
     "minolta": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
     "kodak": (
-        (r"rfs|pakon|f-135", _SCANNER),
+        (r"rfs|pakon|f-135|i\d{4}|hr ?\d", _SCANNER),
+        (r"ektra", _PHONE),
         (r"pixpro (sp|orbit)", _UNKNOWN),
         (r"dcs|pixpro s-1|s-1", _CAMERA),
         (r"", _COMPACT),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 #: Programs that develop raw files to tones of their own; programs of camera makers imitate the camera.
 DEVELOPERS = (
     *("lightroom", "camera raw", "capture one", "captureone", "darktable", "rawtherapee", "ufraw", "dcraw", "dxo"),
-    *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power", "photo ninja"),
+    *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power", "photo ninja", "photoninja", "lightzone"),
 )
 
 #: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
@@ -16,8 +16,8 @@ EDITORS = (
     *("adobe", "photoshop"),
     # raw developers of camera makers, and of the company behind some of them
     *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
-    *("olympus workspace", "olympus viewer", "olympus master", "om workspace", "photofunstudio"),
-    *("silkypix", "raw file converter", "sigma photo pro", "x raw studio"),
+    *("olympus workspace", "olympus viewer", "olympus master", "olympus camedia", "om workspace", "photofunstudio"),
+    *("silkypix", "raw file converter", "sigma photo pro", "x raw studio", "pentax digital camera utility"),
     # editors on computers
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
@@ -30,6 +30,7 @@ EDITORS = (
     *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
     # on phones and in the web
     *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
+    *("samsung photo editor", "darkroom"),
     *("camera360", "facetune", "afterlight", "prisma", "canva", "photopea", "faceapp", "remini", "touchretouch"),
 )
 

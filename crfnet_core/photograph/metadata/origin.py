@@ -207,8 +207,8 @@ def _program_words(origin: FileOrigin, metadata: FileMetadata) -> str:
         size = metadata.width, metadata.height
         before = metadata.exif_size or size
         if math.prod(size) < (1 - SAME_SHAPE) * math.prod(before):
-            return "cropped from {} x {} to {} x {} pixels, but not encoded again".format(*before, *size)
-        return "the file is as the camera wrote it"
+            return "cropped from {} x {} to {} x {} pixels".format(*before, *size)
+        return "nothing shows that a program wrote the file"
     if not origin.is_resaved or origin.is_scaled:
         return ""
     quality = f", as JPEG of quality {origin.jpeg_quality}" if origin.jpeg_quality else ""
