@@ -50,6 +50,7 @@ class PlateReport:
     missing: tuple[int, ...]
     light: PlateLight
     clipped: float  # the share of the encoded values that were outside the LUT's domain, in the files written
+    sizes: tuple[tuple[int, ...], ...]  # the different widths and heights of the files written
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
@@ -125,7 +126,8 @@ def linearize_plates(
         raise PlateError("written_meanwhile", path=problem.facts["path"]) from problem
     written = tuple(target for target in pending if target not in elsewhere)
     clipped = float(np.mean([*conversion.clipped.values()] or [0.0]))
-    return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light, clipped)
+    sizes = tuple(sorted(conversion.sizes))
+    return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light, clipped, sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +141,7 @@ class _Conversion:
     plate_of: Callable[[int], str]
     plates: dict[Path, str] = field(default_factory=dict)  # the identity of the plate of each file written
     clipped: dict[Path, float] = field(default_factory=dict)  # the share outside the LUT, of the same
+    sizes: set[tuple[int, ...]] = field(default_factory=set)  # their widths and heights
 
     def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
@@ -152,6 +155,7 @@ class _Conversion:
         low, high = self.light.lut.domain
         is_coded = frame.samples.dtype.kind == "u"
         self.plates[target] = plate
+        self.sizes.add(pixels.shape[1::-1])
         self.clipped[target] = 0.0 if is_coded else float(np.mean((frame.samples < low) | (frame.samples > high)))
 
     def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:

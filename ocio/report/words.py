@@ -99,6 +99,9 @@ def plate_lines(report: PlateReport) -> list[str]:
     lines = []
     if report.clipped:
         lines.append(f"Warning: {100 * report.clipped:.2g} % of the values are outside the LUT and were clipped.")
+    if report.sizes[1:]:
+        sizes = ", ".join("{} x {}".format(*size) for size in report.sizes[:4]) + ", ..." * bool(report.sizes[4:])
+        lines.append(f"Warning: the frames have different sizes: {sizes}.")
     if report.written:
         lines.append(f"Written: {_first_and_last(report.written)}.")
     if report.skipped:

@@ -52,6 +52,15 @@ def test_an_exr_is_linearized_as_encoded_if_the_user_says_so_and_what_the_lut_cl
     assert "values" not in crfnet("linearize", tmp_path / "inside.exr", *arguments, tmp_path / "c.exr").out
 
 
+def test_frames_of_different_sizes_are_warned_of(crfnet, look, tmp_path):
+    for number, shape in enumerate([(4, 6, 3), (4, 6, 3), (6, 4, 3)]):
+        write_image(tmp_path / f"a.{number}.png", np.zeros(shape, np.uint8))
+    for frames, is_so in (("0-1", False), ("1-2", True)):
+        arguments = ("--lut", look / "plate.spi1d", "--frames", frames, "--overwrite", "--out", tmp_path / "a.%d.exr")
+        out = crfnet("linearize", tmp_path / "a.%d.png", *arguments).out
+        assert ("Warning: the frames have different sizes: 4 x 6, 6 x 4." in out) is is_so
+
+
 def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     forward = tmp_path / "forward.cube"
     write_lut(forward, forward_lut(read_lut(look / "plate.spi1d")))
