@@ -99,8 +99,11 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
 
 def _fail(problem: BaseException) -> int:
     """Print the problem on one line and return the exit code."""
-    if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
+    try:
+        sys.stdout.flush()
+    except OSError:  # Python flushes it once more at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
         return BAD_INPUT
     from crfnet_core.errors import CRFNetError, one_line  # as above
 

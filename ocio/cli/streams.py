@@ -9,7 +9,13 @@ from pathlib import Path
 
 
 def complete_streams() -> None:
-    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
+    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show.
+
+    With PYTHONUNBUFFERED, Python takes no notice of output that a full disk cuts short, so that stdout gets a buffer.
+    """
+    if isinstance(getattr(sys.stdout, "buffer", None), io.RawIOBase):
+        whole = io.BufferedWriter(io.FileIO(sys.stdout.fileno(), "w", closefd=False))
+        sys.stdout = io.TextIOWrapper(whole, sys.stdout.encoding)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name) or Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays
         setattr(sys, name, stream)

@@ -91,10 +91,18 @@ def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
-@pytest.mark.parametrize("command", ["--version >/dev/full", "--help >/dev/full", "info LUT --json >&-"])
-def test_a_document_that_nothing_takes_is_an_error(look, command):
-    command = command.replace("LUT", f"'{look / 'plate.spi1d'}'")
-    done = ran(f"'{CRFNET}' {command}", shell=True)
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        *("--version >/dev/full", "--help >/dev/full", "camera list >/dev/full", "info LUT --json >&-"),
+        "camera show 'Canon EOS 20D' --json >FILE",  # of which a page fits
+    ],
+)
+def test_a_document_that_nothing_takes_whole_is_an_error(look, tmp_path, command, unbuffered):
+    command = command.replace("LUT", f"'{look / 'plate.spi1d'}'").replace("FILE", f"'{tmp_path / 'a.json'}'")
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    done = ran(f"ulimit -f 8; '{CRFNET}' {command}", shell=True, env=environment)
     assert (done.returncode, done.stderr.count("\n")) == (BAD_INPUT, 1)
 
 
