@@ -92,7 +92,7 @@ class RecordFile:
             return {}
         is_file = self.path.is_file() and not self.path.is_symlink()
         *lines, cut = self.path.read_bytes().split(b"\n") if is_file else [b"a link"]
-        if not _START.startswith(cut[: len(_START)]):
+        if not _START.startswith(cut.rstrip(b"\0")[: len(_START)]):  # zeros, after a failure of power
             raise PlateError("not_records", path=self.path)
         try:
             records = [PhotographRecord.from_entry(parse_json(line)) for line in lines]

@@ -147,9 +147,10 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, out, text):
 def test_a_cut_line_goes_also_where_nothing_is_left_to_do(estimate, photographs, out):
     assert estimate(photographs, *QUICK).code == 0
     whole = (out / ESTIMATES).read_bytes()
-    written(out / ESTIMATES, whole + whole[:50])
-    assert estimate(photographs, *QUICK).code == 0
-    assert (out / ESTIMATES).read_bytes() == whole
+    for cut in (whole[:50], bytes(4096), whole[:50] + bytes(50)):  # zeros, after a failure of power
+        written(out / ESTIMATES, whole + cut)
+        assert estimate(photographs, *QUICK).code == 0
+        assert (out / ESTIMATES).read_bytes() == whole
 
 
 @pytest.mark.parametrize("text", ["", '{"photograph": "a'])
