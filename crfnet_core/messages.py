@@ -115,6 +115,7 @@ SENTENCES: Mapping[str, str] = {
     "scene_linear_file": "{path}: no response is estimated from {kind}, whose values are scene-linear as a rule; give"
     " the JPEG, HEIC or TIFF that the camera or the raw developer wrote",
     "stream_at_end": "{path}: nothing is left to read from where the file stands; seek to its beginning",
+    "stream_not_read": "{path}: reading the open file failed ({kind}: {problem}); open it again, or get it again",
     "too_many_pixels": "{path}: claims {width} x {height} pixels; at most {megapixels} megapixels are read: crop it",
     "volume": "{path}: holds a volume; give a flat photograph",
     # photograph: recognition

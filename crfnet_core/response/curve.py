@@ -150,7 +150,7 @@ class ResponseCurve(EqualByFields):
     @overload
     def inverse(self, brightness: NDArray[Any] | Sequence[Any]) -> Float64Array: ...
     def inverse(self, brightness: ArrayLike) -> Any:
-        """Return irradiance g(B) in [0, 1]; B up to `MOST_BRIGHTNESS` is clipped to [0, 1], and NaN stays NaN.
+        """Return irradiance g(B) in [0, 1]; B is clipped to [0, 1], and NaN stays NaN.
 
         This is the exact inverse of `forward`. Our LUTs of it have the same values at the codes that they are exact on:
         see `crfnet.luts.lut1d.inverse_response_lut`.
@@ -168,8 +168,8 @@ class ResponseCurve(EqualByFields):
         Raises
         ------
         CurveError
-            If integers above 1, arrays of unsigned integers, or numbers above `MOST_BRIGHTNESS` are given: code values,
-            which have to be divided by the largest code.
+            If code values are given, which have to be divided by the largest code: integers above 1, arrays of unsigned
+            integers, or numbers as in `are_undivided_codes`.
         """
         return self._inverse(brightness)
 
@@ -179,7 +179,7 @@ class ResponseCurve(EqualByFields):
 
     @cached_property
     def _inverse(self) -> _PiecewiseLinear:
-        return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
+        return _PiecewiseLinear(self.brightness, self.irradiance, is_of_brightness=True)
 
 
 def are_undivided_codes(values: NDArray[np.floating], last: float = 1.0) -> bool:
@@ -188,7 +188,7 @@ def are_undivided_codes(values: NDArray[np.floating], last: float = 1.0) -> bool
     Some exceed it in sound pictures, too, such as at edges of colors that were divided by alpha.
     """
     above = np.count_nonzero(values > MOST_BRIGHTNESS * last)
-    return bool(2 * above > values.size or (above and (values == np.rint(values)).all()))
+    return bool(2 * above > values.size or (above and ((values == np.rint(values)) | np.isnan(values)).all()))
 
 
 def numbers_of(values: ArrayLike, error: type[CRFNetError]) -> NDArray[Any]:
@@ -216,14 +216,14 @@ class _PiecewiseLinear:
     long on a photograph. Here a table of cells holds the segment or the one before it, unless knots lie closer.
     """
 
-    def __init__(self, knots: Float64Array, values: Float64Array, *, most: float = np.inf) -> None:
-        self._knots, self._values, self._most = knots, values, most
+    def __init__(self, knots: Float64Array, values: Float64Array, *, is_of_brightness: bool = False) -> None:
+        self._knots, self._values, self._is_of_brightness = knots, values, is_of_brightness
 
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
         values = numbers_of(arguments, CurveError)
-        if self._most < np.inf and (largest := float(np.fmax.reduce(values, axis=None, initial=0))) > self._most:
-            raise CurveError("brightness_codes", found=largest)
+        if self._is_of_brightness and are_undivided_codes(values):
+            raise CurveError("brightness_codes", found=float(np.fmax.reduce(values, axis=None)))
         if values.dtype.kind in "iu" and values.size and (is_codes(values) or values.max() > 1):
             raise CurveError("brightness_codes", found=int(values.max()))
         kind = np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64

@@ -64,6 +64,7 @@ FILES = [
     ("cr2.tif", b"II*\0" + struct.pack("<I", 20) + b"CR\2\0" + bytes(40), "camera_raw"),
     ("dng.tif", tiff(2, 2, extra=((50706, 1, 0x0401),), content=bytes(12)), "camera_raw"),
     ("preview.tif", tiff(2, 2, extra=((254, 4, 1), (330, 4, 8)), content=bytes(12)), "coding_not_read"),
+    ("below.tif", tiff(2, 2, extra=((330, 4, 8),), content=struct.pack("<HHHII", 1, 256, 4, 1, 3)), "coding_not_read"),
     ("raf.tif", b"FUJIFILMCCD-RAW 0201" + bytes(80), "camera_raw"),
     ("cr3.tif", b"\0\0\0\x18ftypcrx \0\0\0\x01crx isom" + bytes(80), "camera_raw"),
     ("cmyk.tif", tiff(2, 2, samples=4, photometric=5, content=bytes(16)), "other_colors"),

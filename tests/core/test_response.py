@@ -143,6 +143,12 @@ def test_code_values_are_refused(codes):
     assert refusal_of(CurveError, ResponseCurve.gamma().inverse, codes).code == "brightness_codes"
 
 
+def test_a_few_numbers_above_white_are_clipped():
+    picture = np.full((9, 9, 3), 0.5, np.float32)
+    picture[0, 0] = (2.5, np.inf, np.nan)  # as at an edge whose colors were divided by alpha
+    np.testing.assert_array_equal(ResponseCurve.gamma().inverse(picture)[0, 0], (1, 1, np.nan))
+
+
 class OnDevice:
     """A tensor of PyTorch that is not in memory, or has a gradient."""
 

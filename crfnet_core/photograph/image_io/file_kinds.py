@@ -28,8 +28,8 @@ RAW_SUFFIXES = (
 )
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
-#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, DNGVersion, and others.
-_SUBFILE_TYPE, _SUB_DIRECTORIES, _DNG_VERSION = 254, 330, 50706
+#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0: a reduced picture), width, SubIFDs, DNGVersion; and others.
+_SUBFILE_TYPE, _WIDTH, _SUB_DIRECTORIES, _DNG_VERSION = 254, 256, 330, 50706
 FILL_ORDER, EXTRA_SAMPLES = 266, 338
 
 #: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures.
@@ -85,8 +85,9 @@ def _is_raw(path: Path, head: bytes) -> bool:
     if not head.startswith(SIGNATURES["TIFF"]):
         return False
     with path.open("rb") as file:
-        entries = tiff_directory(file)
-    if _DNG_VERSION not in entries and entries.get(_SUBFILE_TYPE, 0) & 1 and _SUB_DIRECTORIES in entries:
+        entries, below = tiff_directory(file), tiff_directory(file, _SUB_DIRECTORIES)
+    is_thumbnail = entries.get(_SUBFILE_TYPE, 0) & 1 or below.get(_WIDTH, 0) > entries.get(_WIDTH, 0)
+    if _DNG_VERSION not in entries and _SUB_DIRECTORIES in entries and is_thumbnail:
         problem = "its first page is a thumbnail, and the picture below it, in a SubIFD, may be camera raw"
         raise PhotoError("coding_not_read", path=path, kind="TIFF", problem=problem)
     return _DNG_VERSION in entries

@@ -20,6 +20,7 @@ _UNSUPPORTED = (
     "unhandled critical chunk",  # PNG of Apple's Xcode
     *("not been built in", "Missing or empty image item"),  # HEIF with other codings, and AVIF of items made of others
     *("No support for", "Invalid bits per sample", "Invalid sampleformat"),  # TIFF in Lab, of JPEG with 12 bits, of 9
+    "different values per sample",  # TIFF of 5, 6 and 5 bits
     *("components are supported", "exceeds limit"),  # JPEG 2000 of gray and alpha; WebP above Pillow's limit
     "JxlDecoderImageOutBufferSize failed",  # JPEG XL with spot colors, or CMYK
 )

@@ -76,8 +76,9 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     if hasattr(source, "read") and not isinstance(source, io.TextIOBase):
         try:
             content = source.read()
-        except (OSError, TypeError, ValueError) as problem:  # closed files are a ValueError, archives a TypeError
-            raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
+        except Exception as problem:  # members of archives and answers of servers raise what they like
+            kind = type(problem).__name__
+            raise PhotoError("stream_not_read", path=path, kind=kind, problem=problem) from problem
         if not content:
             raise PhotoError("stream_at_end", path=path)
     if not isinstance(content, bytes | bytearray | memoryview):
