@@ -69,12 +69,12 @@ def plain_stem(photo: Path) -> str:
 
     It is cut to `LONGEST_STEM` bytes, so that every file named after it can be written.
     """
-    return cut_to_bytes(_plain(photo.stem), LONGEST_STEM)
+    return _plain(cut_to_bytes(photo.stem, LONGEST_STEM))
 
 
 def _plain(name: str) -> str:
-    """Return a name with `_` for what configs, patterns or other systems interpret."""
-    return re.sub(r"[$%#*?\\:]", "_", name)
+    """Return a name with `_` for what configs, patterns or other systems interpret, or cut off at the end."""
+    return re.sub(r"[$%#*?\\:]|\s+$", "_", name)
 
 
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:

@@ -159,10 +159,15 @@ def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
         import av
     except ImportError:
         raise PhotoError("deep_avif_package_missing", path=path, bits=bit_depth) from None
-    with av.open(str(path), metadata_errors="replace") as container:
-        context = container.streams.video[0].codec_context
-        codes = (int(context.colorspace), int(context.color_range)) if context.color_range else ()
-        frame = next(container.decode(video=0))
+    try:
+        with av.open(str(path), metadata_errors="replace") as container:
+            is_main = av.stream.Disposition.default
+            stream = max(container.streams.video, key=lambda each: bool(each.disposition & is_main))
+            context = stream.codec_context
+            codes = (int(context.colorspace), int(context.color_range)) if context.color_range else ()
+            frame = next(container.decode(stream))
+    except av.error.PatchWelcomeError as unknown:  # items in several extents
+        raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=unknown.strerror) from None
     if (frame.width, frame.height) != size:
         raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=f"{bit_depth} bits in tiles")
     coding = Coding.from_frame(frame, is_still=True, codes=codes)

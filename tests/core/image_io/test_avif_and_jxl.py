@@ -7,6 +7,7 @@ from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
+from crfnet_core.photograph.image_io.iso_boxes import boxes
 from crfnet_core.photograph.image_io.jxl_files import JxlHeader, with_jxl_boxes
 from crfnet_core.photograph.metadata.origin import file_origin
 from tests.helpers.colored_ramp import colored_ramp
@@ -61,6 +62,36 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
     limited, full = (read_codes(tmp_path / name).codes.astype(int) for name in ("a.avif", "b.avif"))
     assert np.abs(limited - codes).mean() < 4
     assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
+
+
+def with_items(content, *others):
+    """Return the content of an AVIF with the items of others of the same size before its own, which stays the main."""
+    pictures = [dict(boxes(each))[b"mdat"] for each in (*others, content)]
+    count, meta = len(pictures), dict(boxes(dict(boxes(content))[b"meta"][4:]))
+    ipco, ipma = (dict(boxes(meta[b"iprp"]))[name] for name in (b"ipco", b"ipma"))
+    numbers = [struct.pack(">H", item) for item in range(1, count + 1)]
+    owners = ipma[:4] + struct.pack(">I", count) + b"".join(item + ipma[10:] for item in numbers)
+    entries = b"".join(box(b"infe", b"\2\0\0\0" + item + b"\0\0av01\0") for item in numbers)
+    head = box(b"hdlr", meta[b"hdlr"]) + box(b"pitm", bytes(4) + numbers[-1])
+    tail = box(b"iinf", bytes(4) + numbers[-1] + entries) + box(b"iprp", box(b"ipco", ipco) + box(b"ipma", owners))
+
+    def before(place):
+        sizes = list(map(len, pictures))
+        starts = (place + sum(sizes[:item]) for item in range(count))
+        rows = map(struct.pack, [">HHHII"] * count, range(1, count + 1), [0] * count, [1] * count, starts, sizes)
+        iloc = box(b"iloc", bytes(4) + b"\x44\0" + numbers[-1] + b"".join(rows))
+        return box(b"ftyp", b"avif\0\0\0\0avifmif1miaf") + box(b"meta", bytes(4) + head + iloc + tail)
+
+    return before(len(before(0)) + 8) + box(b"mdat", b"".join(pictures))
+
+
+def test_the_main_item_of_deep_avif_may_come_later(tmp_path):
+    codes = np.tile(np.linspace(0, 1023, 128).round()[None, :, None], (96, 1, 3))
+    for name, picture in (("main.avif", codes), ("other.avif", codes[:, ::-1])):
+        deep_avif(tmp_path / name, picture, 2)
+    main, other = ((tmp_path / name).read_bytes() for name in ("main.avif", "other.avif"))
+    path = written(tmp_path / "both.avif", with_items(main, other))
+    np.testing.assert_array_equal(read_codes(path).codes, read_codes(tmp_path / "main.avif").codes)
 
 
 @pytest.mark.parametrize("name", ["alpha10.avif", "cropped8.avif"])

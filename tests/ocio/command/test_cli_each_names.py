@@ -16,11 +16,11 @@ from tests.helpers.records import plates_in, records_in
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
 
 
-def test_names_of_one_alias_are_two_photographs(estimate, photographs, tmp_path):
-    for name in ("a-b.jpg", "a_b.jpg", "a b.jpg"):
+def test_names_of_one_alias_or_rule_are_two_photographs(estimate, photographs, tmp_path):
+    for name in ("a-b.jpg", "a_b.jpg", "a b.jpg", "a .jpg"):
         shutil.copy(photographs / "a.jpg", photographs / name)
     assert estimate(photographs, *QUICK).code == 0
-    assert plates_in(tmp_path / "out") == ["a b", "a-b", "a", "a_b", "b"]
+    assert plates_in(tmp_path / "out") == ["a_", "a b", "a-b", "a", "a_b", "b"]
     assert loaded(tmp_path / "out" / "config.ocio").getColorSpace("crf_a_b").getName() == "CRF a_b"
 
 
