@@ -45,7 +45,9 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.UNKNOWN: {
         **{"": ("",), "Hasselblad": ("L1D-20c",), "RICOH": ("RICOH THETA S",), "NIKON": ("KeyMission 170",)},
         **{"Canon": ("Canon LEGRIA HF R86", "Canon EOS C70"), "Panasonic": ("HC-V770",), "Nobody": ("D90",)},
-        **{"Google": ("Street View",), "LGE": ("LG-R105",)},
+        **{"Google": ("Street View", "Glass 1"), "LGE": ("LG-R105",), "Apple": ("Apple Vision Pro",)},
+        **{"Leica Microsystems": ("MC190 HD",), "OLYMPUS": ("DP74",), "Motorola Solutions": ("V700",)},
+        "EPSON": ("MOVERIO BT-40",),
     },
 }
 

@@ -24,6 +24,7 @@ _PHONE, _COMPACT, _CAMERA, _SCANNER, _THERMAL, _UNKNOWN = Device
 #: Kind -> beginnings of the makes, in lower case, of makers of this kind alone, as far as photographs of them are seen.
 #: Phones include tablets, cameras digital backs; behind a scanner, the photograph is on film or paper.
 MAKERS = {
+    Device.UNKNOWN: ("leica microsystems", "motorola solutions"),
     Device.PHONE: (
         *("iphone", "ipad", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus"),
         *("motorola", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion"),
@@ -52,8 +53,8 @@ _SCANNER_MODEL = r"scan|(office|desk|laser|page)jet|\b(mfc|dcp|fi|kv|scx)-|serie
 
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
 PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
-    "apple": ((r"quicktake", _COMPACT), (r"", _PHONE)),
-    "google": ((r"street view", _UNKNOWN), (r"", _PHONE)),
+    "apple": ((r"quicktake", _COMPACT), (r"vision", _UNKNOWN), (r"", _PHONE)),
+    "google": ((r"street view|glass", _UNKNOWN), (r"", _PHONE)),
     "lg": ((r"r105", _UNKNOWN), (r"", _PHONE)),
     "casio": ((r"ca\d", _PHONE), (r"", _COMPACT)),
     "canon": (
@@ -82,7 +83,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
         (r"x-|gfx|finepix ?s[1235] ?pro|is[- ]?pro|dbp", _CAMERA),
         (r"", _COMPACT),
     ),
-    "olympus": ((r"e-?[12]0\b|e-100rs", _COMPACT), (r"e-|om-|pen|air", _CAMERA), (r"", _COMPACT)),
+    "olympus": ((r"dp\d", _UNKNOWN), (r"e-?[12]0\b|e-100rs", _COMPACT), (r"e-|om-|pen|air", _CAMERA), (r"", _COMPACT)),
     "om digital": ((r"om-|e-|pen", _CAMERA), (r"", _COMPACT)),
     "pentax": ((r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT), (r"k|\*|645|q", _CAMERA)),
     "ricoh": ((r"pentax (k|\*|645|q)|k-|gxr", _CAMERA), (r"(ricoh )?theta", _UNKNOWN), (r"", _COMPACT)),
@@ -100,7 +101,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "contax": ((r"n digital", _CAMERA), (r"", _COMPACT)),
     "hp": ((r"slate|touchpad", _PHONE), (r"", _COMPACT)),
     "kyocera": ((r"finecam|fc-", _COMPACT), (r"", _PHONE)),
-    "epson": ((r"r-d1", _CAMERA), (r"photopc|l-\d", _COMPACT), (r"", _SCANNER)),
+    "epson": ((r"r-d1", _CAMERA), (r"photopc|l-\d", _COMPACT), (r"moverio|bt-\d", _UNKNOWN), (r"", _SCANNER)),
 }
 
 #: Makes that begin in another way than the patterns' names.

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 DEVELOPERS = (
     *("lightroom", "camera raw", "capture one", "captureone", "darktable", "rawtherapee", "ufraw", "dcraw", "dxo"),
     *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power", "photo ninja", "photoninja", "lightzone"),
+    *("aftershot", "ansel", "filmulator", "vkdt"),
 )
 
 #: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
@@ -30,7 +31,7 @@ EDITORS = (
     *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
     # on phones and in the web
     *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
-    *("samsung photo editor", "darkroom"),
+    *("samsung photo editor", "darkroom", "lightleap", "helicon focus"),
     *("camera360", "facetune", "afterlight", "prisma", "canva", "photopea", "faceapp", "remini", "touchretouch"),
 )
 
