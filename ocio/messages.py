@@ -36,7 +36,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether it is linear, as most EXR files; state it if its values are encoded",
     "finished_differs": "{path}: is there already, with {difference}; use the same options, or another folder",
-    "finished_foreign": "{path}: is there already, and is not a whole linear plate of an earlier run; write elsewhere",
+    "finished_foreign": "{path}: is there already, and not read as a linear plate of an earlier run; write elsewhere",
     "finished_outdated": "{path}: is of another plate, or older than its plate{more}; delete it, or write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or one like plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}){others}{gaps}; the first: {first}",
