@@ -28,6 +28,7 @@ class FileMetadata(CheckedFields):
     software: str = ""  # EXIF Software: the program that wrote the file last, or the camera's firmware
     history: tuple[str, ...] = ()  # programs in the XMP history (stEvt:softwareAgent) that saved pixels, in order
     raw_file: str = ""  # XMP crs:RawFileName: the file that a program of Adobe developed; it may be an ordinary picture
+    derived_from: str = ""  # XMP xmpMM:DerivedFrom, if it is a text: to darktable, the file that it developed
     renderer: str = ""  # the program that rendered the picture, so that no camera took it
     iso: int | None = None  # EXIF PhotographicSensitivity
     exif_size: tuple[int, int] | None = None  # EXIF PixelXDimension and PixelYDimension, by the camera or an editor
@@ -66,6 +67,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         software=_text(header, "Software"),
         history=tuple(part.strip() for part in history.split(";") if part.strip()),
         raw_file=_text(header, "crs:RawFileName"),
+        derived_from=_text(header, "xmpMM:DerivedFrom"),
         renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,

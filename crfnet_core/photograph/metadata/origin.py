@@ -38,6 +38,10 @@ INDISTINCT_QUALITY = 98  # from here on the tables of the IJG library are nearly
 SENT_QUALITY = 85  # the most of copies from messengers and web sites; pages of photographers have 90 and more
 
 
+#: Makers, other than of phones, whose programs write JPEG by the IJG library, in lower case.
+LIBRARY_USERS = ("raspberry pi",)
+
+
 class Encoding(StrEnum):
     """The encoding of a format that holds no still photographs."""
 
@@ -77,8 +81,8 @@ class FileOrigin:
 
     @property
     def names_device(self) -> bool:
-        """Whether the file or the user states what took the picture."""
-        return bool(self.camera) or self.has_stated_device
+        """Whether the file or the user states which camera took the picture: a scanner did not."""
+        return self.device is not Device.SCANNER and (bool(self.camera) or self.has_stated_device)
 
     @property
     def is_phone_still(self) -> bool:
@@ -103,7 +107,8 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     if size and max(size) * most < max(metadata.width, metadata.height):  # a preview's size: no camera enlarges
         metadata = replace(metadata, exif_size=None)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
-    is_raw = not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
+    source = metadata.raw_file or metadata.derived_from * is_developer(editor)
+    is_raw = not source.casefold().endswith(ORDINARY_FILES)
     origin = FileOrigin(
         device=device,
         camera=camera_name(metadata.make, metadata.model),
@@ -115,7 +120,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
         encoding=FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN),
         words=(),
         renderer=metadata.renderer,
-        is_developed=is_raw if editor and metadata.raw_file else is_developer(editor),
+        is_developed=is_raw if editor and source else is_developer(editor),
     )
     return replace(origin, words=tuple(_words(origin, metadata)))
 
@@ -147,7 +152,8 @@ def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | N
     if not metadata.has_camera:
         return True if is_ijg else None
     if is_ijg and metadata.has_jfif:
-        return None if device == Device.PHONE else True  # phones use the library themselves
+        uses_library = device == Device.PHONE or metadata.make.casefold().startswith(LIBRARY_USERS)
+        return None if uses_library else True
     return None if is_ijg or metadata.has_jfif else False
 
 
@@ -202,7 +208,9 @@ def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
 def _program_words(origin: FileOrigin, metadata: FileMetadata) -> str:
     """Return the part of programs in words; empty if nothing is known of any, or scaling says it."""
     if origin.editor:
-        return f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
+        names_raw = origin.is_developed and (metadata.raw_file or metadata.derived_from)
+        saved = f"saved by {origin.editor}" + ", a raw developer" * origin.is_developed
+        return f"developed from a raw file by {origin.editor}" if names_raw else saved
     if origin.is_resaved is False:
         size = metadata.width, metadata.height
         before = metadata.exif_size or size
