@@ -126,8 +126,8 @@ SENTENCES: Mapping[str, str] = {
     "flat_frame": "a flat frame: its brightness lies between codes {low} and {high} of 255, so too little of the"
     " response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts, whose white is the largest code",
-    "noise_frame": "noise: near parts of the frame are no more alike than far ones, so no scene shows",
-    "noise_frame_advice": "give a photograph of a scene",
+    "noise_frame": "noise or a texture: near parts of the frame are no more alike than far ones, so no scene shows",
+    "noise_frame_advice": "give a photograph of a scene, or the file as the camera wrote it",
     "limited_range": "probably limited range stored as full: hardly a code lies beyond 16 and 235 of 255, which are"
     " black and white of video",
     "limited_range_advice": "if so, expand the range first: when ffmpeg extracts frames, with its filter"
@@ -168,12 +168,13 @@ SENTENCES: Mapping[str, str] = {
     " is worse (E_est 2.52, 0.235 stop) than the mean of other cameras (1.27, 0.102), so another model is the default",
     "as_written": "{text}",
     "clipped": "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure",
-    "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file; linear"
-    " light, which such programs write, too, needs no estimate",
+    "developed": "written by {editor}, as a rule from a raw file, and not by the camera: give the camera's own file;"
+    " linear light, which such programs write, too, needs no estimate",
     "edited": "saved by {editor}, which may have changed the tones: give the camera's own file",
     "gray": "gray photograph: one channel says less than three, and it may be a mixture of channels",
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",
     "recognized": "{reason}",
+    "scan": "a scan of film or paper: the prior for any source expects its tones, that for cameras does not",
     "several_cameras": "photographs of different cameras ({cameras}): estimate each camera by itself",
     # calibration
     "bad_seconds": "'{text}' is not an exposure time; give seconds such as 1/60 or 0.5",

@@ -14,7 +14,7 @@ from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate, WindowEstimate
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.network.pooling import agreeing
-from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.metadata import Device, FileOrigin
 from crfnet_core.photograph.recognition import Levels, Recognition, log_factor, recognize
 from crfnet_core.photograph.thumbnail import is_noise, scene_similarities
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict, independent_fraction
@@ -79,10 +79,12 @@ def estimate_response(
     recognition = recognize(
         levels,
         log_probability=posterior.families[Family.LOG],
-        is_noise=all(is_noise(photograph.thumbnail) for photograph in photographs),
+        is_noise=all(map(_is_noise, photographs)),
         makes=tuple(photograph.make for photograph in photographs),
         origins=origins,
     )
+    is_gray = all(photograph.is_gray for photograph in photographs)  # too much is accepted then: docs/ACCURACY.md
+    is_doubtful = bool(recognition) or (is_gray and not any(origin.names_device for origin in origins))
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
@@ -91,10 +93,10 @@ def estimate_response(
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
         families=posterior.families,
-        verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior),
+        verdict=Verdict.DO_NOT_TRUST if is_doubtful else Verdict.from_posterior(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition, posterior),
+        warnings=_warnings(photographs, origins, recognition, posterior, prior),
         model=network.config.label,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -117,6 +119,12 @@ def _informed(prior: Prior, origins: Sequence[FileOrigin], levels: Levels) -> Pr
     return replace(informed, plain=0.0) if any(origin.names_device for origin in origins) else informed
 
 
+def _is_noise(photograph: CutPhotograph) -> bool:
+    """Return whether a photograph shows no scene; only a file that names the camera may hold a texture."""
+    has_camera = photograph.origin is not None and bool(photograph.origin.camera)
+    return is_noise(photograph.thumbnail, photograph.samples, has_camera=has_camera)
+
+
 def _window_estimates(
     photographs: Sequence[CutPhotograph], predictions: Sequence[Predictions], bank: ResponseBank, prior: Prior
 ) -> Iterator[WindowEstimate]:
@@ -133,6 +141,7 @@ def _warnings(
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
     posterior: Posterior,
+    prior: Prior,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
     cameras = list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
@@ -143,6 +152,7 @@ def _warnings(
         "answer_of_windows": posterior.network_answer is not None,
         "narrow_range": not any(window.covers_range for window in windows),
         "gray": all(photograph.is_gray for photograph in photographs),
+        "scan": prior.name == "camera" and any(origin.device is Device.SCANNER for origin in origins),
     }
     others = [Notice(code) for code, is_so in doubts.items() if is_so]
     return (*input_warnings(recognition, origins), *several, *others)

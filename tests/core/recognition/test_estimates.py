@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw
 from crfnet_core import AnalysisOptions, Photo, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.photograph.metadata import Device, Encoding, FileMetadata, file_origin
 from crfnet_core.photograph.recognition import Kind
-from crfnet_core.posterior import Family, Verdict
+from crfnet_core.posterior import Family, Prior, Verdict
 from crfnet_core.response.curve import UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from crfnet_core.response.transfer_functions import srgb_encode
@@ -81,6 +81,40 @@ def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
 def test_noise_is_not_to_be_trusted_whoever_says_what_took_it(network, kind, device):
     estimate = estimated(noise(kind), network, device=device)
     assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.FLAT)
+
+
+def test_only_a_texture_whose_camera_is_named_is_not_noise(network):
+    """Lawns and gravel have nearly the thumbnails of noise, but neighboring pixels are alike."""
+    canon = FileMetadata(make="Canon", model="EOS R")
+    kinds = [
+        (estimated(pixels, network, metadata=metadata).recognition or None)
+        for pixels in (quantized(0.5 + 3 * (blurred(noise("gray")) - 0.5)), noise("gray"))
+        for metadata in (canon, FileMetadata())
+    ]
+    assert [kind and kind.kind for kind in kinds] == [None, Kind.FLAT, Kind.FLAT, Kind.FLAT]
+
+
+def test_a_gray_picture_is_trusted_only_if_a_camera_is_named(network, plate):
+    """Of gray pictures in plain encodings, from linear light to sRGB, a half looks like photographs."""
+    pixels = read_photo(plate).pixels
+    gray = np.repeat(pixels[..., 1:2], 3, axis=2)
+    canon = FileMetadata(make="Canon", model="EOS R")
+    for metadata, device, is_trusted in ((canon, None, True), (None, Device.PHONE, True), (None, None, False)):
+        photo = Photo(pixels=gray, bit_depth=8, is_gray=True, path=Path("a.png"), metadata=metadata)
+        estimate = estimate_response(photo, network=network, options=AnalysisOptions(windows=4, device=device))
+        assert (estimate.verdict is Verdict.USABLE, estimate.recognition) == (is_trusted, None)
+
+
+def test_a_scanner_is_no_camera_and_the_prior_for_scans_is_advised(network, root):
+    picture = rendered(root, lambda light: light ** (1 / 2.2))
+    verdicts = {}
+    for name, prior in (("camera", None), ("any", Prior.load("any"))):
+        metadata = FileMetadata(make="EPSON", model="Perfection V600", file_format="JPEG")
+        photo = Photo(pixels=picture["pixels"], bit_depth=8, is_gray=False, path=Path("a.jpg"), metadata=metadata)
+        verdicts[name] = estimate_response(photo, network=network, prior=prior)
+    codes = {name: [warning.code for warning in estimate.warnings] for name, estimate in verdicts.items()}
+    assert verdicts["camera"].verdict is Verdict.DO_NOT_TRUST
+    assert ("scan" in codes["camera"], "scan" in codes["any"]) == (True, False)
 
 
 @pytest.mark.parametrize(("camera", "verdict"), [({}, "do not trust"), ({"make": "Canon", "model": "EOS R"}, "usable")])
