@@ -55,6 +55,7 @@ SENTENCES: Mapping[str, str] = {
     "folder_absent": "{path}: the folder {folder} does not exist; create it first",
     "folder_read_only": "{path}: the folder {folder} is not writable; choose another",
     "is_folder": "{path}: is a folder; give the name of a file",
+    "name_reserved": "{path}: names that begin with {prefix} are those of temporary files; choose another",
     "not_written": "{path}: cannot be written ({reason})",
     "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
@@ -126,6 +127,8 @@ SENTENCES: Mapping[str, str] = {
     "flat_frame": "a flat frame: its brightness lies between codes {low} and {high} of 255, so too little of the"
     " response shows",
     "flat_frame_advice": "give a photograph with dark and bright parts, whose white is the largest code",
+    "merged": "written by {editor}, which merges exposures: its tones differ from place to place",
+    "merged_advice": "give one of the exposures as the camera wrote it, or the merged light as a linear EXR",
     "noise_frame": "noise or a texture: near parts of the frame are no more alike than far ones, so no scene shows",
     "noise_frame_advice": "give a photograph of a scene, or the file as the camera wrote it",
     "limited_range": "probably limited range stored as full: hardly a code lies beyond 16 and 235 of 255, which are"
@@ -171,7 +174,7 @@ SENTENCES: Mapping[str, str] = {
     "developed": "written by {editor}, as a rule from a raw file, and not by the camera: give the camera's own file;"
     " linear light, which such programs write, too, needs no estimate",
     "edited": "saved by {editor}, which may have changed the tones: give the camera's own file",
-    "gray": "gray photograph: one channel says less than three, and it may be a mixture of channels",
+    "gray": "gray or toned photograph: one channel says less than three, and it may be a mixture of channels",
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",
     "recognized": "{reason}",
     "scan": "a scan of film or paper: the prior for any source expects its tones, that for cameras does not",

@@ -133,6 +133,8 @@ def _renamed(fact: object, temporary: Path, folder: Path) -> object:
 def _publish(temporary: Path, folder: Path, *, overwrite: bool, error: type[CRFNetError]) -> None:
     """Move the files of one folder into another, or none of them; earlier files of these names move into `_EARLIER`."""
     files = _staged(temporary)
+    if reserved := {path.name for path in temporary.glob(f"{_PREFIX}*")} - {_LOCK}:
+        raise error("name_reserved", path=folder / min(reserved), prefix=_PREFIX)
     there = [path.name for path in files if os.path.lexists(folder / path.name)]
     if there and not overwrite:
         raise error("written_meanwhile", path=folder / there[0])

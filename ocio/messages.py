@@ -79,7 +79,8 @@ SENTENCES: Mapping[str, str] = {
     "lut_tables_differ": "a LUT of R, G and B needs three tables of one length and one domain",
     "lut_unreadable": "{path}: cannot be read ({reason}); check the name of the LUT",
     # configs
-    "base_folder_is_variable": "{path}: OpenColorIO takes $ and % for variables; move the config that you build on",
+    "base_folder_is_misread": "{path}: OpenColorIO takes $ and % for variables, and in configs of version 1 a colon for"
+    " the end of a folder; move the config that you build on",
     "base_would_change": "{path}: is the folder of the config that you build on, which stays as it is; choose another",
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",

@@ -9,7 +9,7 @@ from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.photograph.metadata import FileMetadata, FileOrigin, file_origin, with_stated_device
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition import Levels, refuse_tagged
+from crfnet_core.photograph.recognition import Levels, is_monochrome, refuse_tagged
 from crfnet_core.photograph.thumbnail import thumbnail
 from crfnet_core.statistics.windows import WINDOW_SIZE, Window, cut_windows, select_windows
 from crfnet_core.types import Float32Array, Float64Array, Progress, counted_from
@@ -29,7 +29,7 @@ class CutPhotograph:
     levels: Levels  # its darkest, its middle and its brightest samples
     make: str  # the camera's maker, as the file writes it; empty if metadata is ignored
     origin: FileOrigin | None  # how the file was made, by its metadata and the user; None if neither says anything
-    is_gray: bool  # whether its three channels are equal
+    is_gray: bool  # whether its colors are functions of its brightness: gray, or toned
     clipped: float  # fraction of the samples of its windows at the ends of the range
 
 
@@ -64,7 +64,7 @@ def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutP
         levels=Levels.from_pixels(photo),
         make=photo.metadata.make if photo.metadata else "",
         origin=origin,
-        is_gray=photo.is_gray,
+        is_gray=photo.is_gray or is_monochrome(samples),
         clipped=float(((samples <= DARKEST) | (samples >= BRIGHTEST)).mean()),
     )
 

@@ -127,8 +127,9 @@ def _relocated(base: ConfigSource) -> OCIO.Config:
     config.clearSearchPaths()
     if base.path is not None:
         home = base.path.parent
-        if "$" in str(home) or str(home).count("%") > 1:
-            raise ConfigError("base_folder_is_variable", path=home)
+        is_split = ":" in str(home) and config.getMajorVersion() < 2
+        if is_split or "$" in str(home) or str(home).count("%") > 1:
+            raise ConfigError("base_folder_is_misread", path=home)
         for folder in folders:
             config.addSearchPath(str(home / folder))
             if folder.startswith(("$", "%")):  # a variable, whose value may be an absolute path

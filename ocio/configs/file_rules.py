@@ -1,6 +1,7 @@
 """File rules of a config: the files of a plate, by their full names in upper or lower case."""
 
 import re
+import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from itertools import product
@@ -165,8 +166,8 @@ def _shared_patterns(claims: Iterable[FileClaim]) -> set[str]:
 
 
 def _folded(pattern: str) -> str:
-    """Return the same text for all names that a rule takes for one; upper() unites the i without a dot with i."""
-    return pattern.upper().casefold()
+    """Return the same text for all names that a rule or a system takes for one; upper() unites the dotless i with i."""
+    return unicodedata.normalize("NFC", pattern.upper().casefold())
 
 
 def _have_common(one: str, other: str) -> bool:

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_metadata, read_photo
@@ -12,14 +13,14 @@ from crfnet_core.photograph.metadata.jpeg import (
     scaled_table,
 )
 from crfnet_core.photograph.metadata.origin import ADOBE
-from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
+from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment, xmp_packet
 from tests.helpers.folders import written
 from tests.helpers.images import write_image
 from tests.helpers.refusals import refusal_of
 
 EXIF: dict[str, object] = {"Make": "Canon", "Model": "Canon EOS 20D", "Software": "Adobe Photoshop CS6"}
 EXIF |= {"Exif__PhotographicSensitivity": 200, "Exif__PixelXDimension": 3504, "Exif__PixelYDimension": 2336}
-OWN_TABLE = (3,) * 64
+OWN_TABLE, PHOTOSHOP = (3,) * 64, "Adobe Photoshop CC (Macintosh)"
 
 
 def read(path):
@@ -70,22 +71,46 @@ def test_adobes_segment_names_an_editor_where_no_text_does(tmp_path):
     assert file_origin(read(path)).editor == ADOBE
 
 
-@pytest.mark.parametrize("changed", ["/", "/metadata"])
-def test_xmp_names_programs_that_saved_pixels_and_the_raw_file(tmp_path, changed):
+@pytest.mark.parametrize(
+    ("changed", "programs"), [(["/"], (PHOTOSHOP,)), (["/metadata"], ()), (["/", "/metadata"], (PHOTOSHOP,))]
+)
+def test_xmp_names_programs_that_saved_pixels_and_the_raw_file(tmp_path, changed, programs):
     xmp = (
         b'http://ns.adobe.com/xap/1.0/\0<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf='
         b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
         b' xmlns:stEvt="http://ns.adobe.com/xap/1.0/sType/ResourceEvent#" crs:RawFileName="_DSC0001.NEF"'
         b' xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/"><xmpMM:History><rdf:Seq>'
-        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)" stEvt:changed="%b"/>'
-        b"</rdf:Seq></xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
-    ) % changed.encode()
+        b"%b</rdf:Seq></xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
+    )
+    event = '<rdf:li stEvt:action="saved" stEvt:softwareAgent="{}" stEvt:changed="{}"/>'
+    xmp %= "".join(map(event.format, (PHOTOSHOP, "Adobe Photoshop Lightroom 6"), changed)).encode()
     content = jpeg(tmp_path / "a.jpg", Software="Ver.1.0")
     metadata = read(written(tmp_path / "a.jpg", with_jpeg_segment(content, 0xE1, xmp)))
-    programs = () if changed == "/metadata" else ("Adobe Photoshop CC (Macintosh)",)
     assert (metadata.history, metadata.raw_file) == (programs, "_DSC0001.NEF")
     assert file_origin(metadata).editor == (programs or (ADOBE,))[0]
     assert file_origin(metadata).is_developed
+
+
+@pytest.mark.parametrize("name", ["a.jpg", "a.webp", "a.tif"])
+def test_the_first_program_does_not_hide_the_last(tmp_path, name):
+    """OpenImageIO gives the name of EXIF Software to XMP's CreatorTool, which cameras write, too."""
+    exif, camera = Image.Exif(), "NIKON Z 6_2 Ver.01.60"
+    exif[305] = "GIMP 2.10.34"
+    xmp = xmp_packet(b'xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmp:CreatorTool="%b"' % camera.encode())
+    tags = {"tiffinfo": {305: exif[305], 700: xmp}} if name == "a.tif" else {"exif": exif, "xmp": xmp}
+    Image.new("RGB", (24, 16)).save(tmp_path / name, **tags)
+    metadata = read(tmp_path / name)
+    assert (metadata.software, metadata.history) == (exif[305], (camera,))
+    assert file_origin(metadata).editor == exif[305]
+
+
+@pytest.mark.parametrize(("is_applied", "raw_file"), [("True", "1.NEF"), ("False", "")])
+def test_settings_that_are_not_applied_have_developed_nothing(tmp_path, is_applied, raw_file):
+    settings = (
+        b'xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/" crs:RawFileName="1.NEF" crs:AlreadyApplied="%b"'
+    )
+    Image.new("RGB", (24, 16)).save(tmp_path / "a.jpg", xmp=xmp_packet(settings % is_applied.encode()))
+    assert read(tmp_path / "a.jpg").raw_file == raw_file
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.COMPACT: {
         **{"CASIO COMPUTER CO.,LTD.": ("EX-Z750",), "Canon": ("Canon DIGITAL IXUS 60", "Canon PowerShot G7")},
         **{"EASTMAN KODAK COMPANY": ("KODAK DC240 ZOOM DIGITAL CAMERA",), "JK Imaging, Ltd.": ("KODAK PIXPRO AZ421",)},
-        **{"FUJIFILM": ("FinePix S5000", "FinePix X100", "X-S1", "X100V", "X20", "XF10")},
+        **{"LEICA": ("SOFORT 2",), "FUJIFILM": ("FinePix S5000", "FinePix X100", "X-S1", "X100V", "X20", "XF10")},
         **{"Hewlett-Packard": ("HP PhotoSmart 735",), "Leica Camera AG": ("LEICA Q2",)},
         **{"NIKON": ("COOLPIX P900", "E990"), "OLYMPUS IMAGING CORP.": ("SP570UZ",)},
         **{"OLYMPUS OPTICAL CO.,LTD": ("E-20,E-20N,E-20P",), "Panasonic": ("DC-TZ90", "DMC-LC1", "DMC-LX7")},
@@ -37,7 +37,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         **{"EPSON": ("Perfection V700",), "Canon": ("CanoScan 9000F",), "Hewlett-Packard": ("HP Scanjet G4050",)},
         **{"Hasselblad": ("Flextight X5",), "FUJITSU": ("ScanSnap iX500",), "HP": ("Officejet 6600",)},
         **{
-            "Samsung": ("M2070 Series",),
+            **{"Samsung": ("M2070 Series",), "RICOH": ("Aficio MP C3002",), "SHARP": ("MX-2640N",)},
             "Kodak": ("i2600", "HR 500"),
             "KONICA MINOLTA": ("bizhub C364e", "DiMAGE Scan Dual4"),
         },

@@ -34,6 +34,11 @@ def write(folder, names):
             (staged / name).write_text("new")
 
 
+def test_names_of_temporary_files_are_refused_and_not_left_out(tmp_path):
+    assert refusal_of(CRFNetError, write, tmp_path, ["a.txt", ".crfnet-b.txt"]).code == "name_reserved"
+    assert not content(tmp_path)
+
+
 def test_errors_keep_their_class_code_and_facts_and_name_the_final_file(tmp_path):
     inner = CRFNetError("exists")
 

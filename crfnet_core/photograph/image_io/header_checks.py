@@ -11,8 +11,9 @@ import OpenImageIO as oiio
 from PIL import Image
 
 from crfnet_core.errors import PhotoError, one_line
+from crfnet_core.photograph.metadata.file_metadata import SOFTWARE
 from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
-from crfnet_core.photograph.metadata.tiff_tags import interop_index
+from crfnet_core.photograph.metadata.tiff_tags import exif_software, interop_index
 
 #: Parts of messages by which decoders refuse sound files of a coding that they do not know.
 _UNSUPPORTED = (
@@ -113,6 +114,7 @@ def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
         exif = exif.removeprefix(_EXIF_NAME)
         info = {**info, "exif": (_EXIF_NAME + exif)[: _MOST_BYTES["exif"] - 1]}
         complete.attribute(INTEROP_INDEX, interop_index(BytesIO(exif)))
+        complete.attribute(SOFTWARE, exif_software(BytesIO(exif)))
     fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return complete

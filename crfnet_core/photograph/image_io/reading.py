@@ -30,10 +30,10 @@ from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, che
 from crfnet_core.photograph.image_io.jxl_files import JxlHeader, jxl_header, with_jxl_boxes
 from crfnet_core.photograph.image_io.pillow_files import PILLOW_KINDS, read_pillow_file
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
-from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.photograph.metadata.file_metadata import SOFTWARE, FileMetadata, metadata_of_header
 from crfnet_core.photograph.metadata.header_colors import INTEROP_INDEX
 from crfnet_core.photograph.metadata.icc import SOURCE
-from crfnet_core.photograph.metadata.tiff_tags import interop_index, tiff_directory
+from crfnet_core.photograph.metadata.tiff_tags import exif_software, interop_index, tiff_directory
 from crfnet_core.photograph.photo import EXIF_TURNS, UPRIGHT, CodeValues, Photo, Turn, upright
 
 _ROWS, _MOST_PAGES = 256, 64  # rows read at a time, and pages of a TIFF file that are searched for the largest
@@ -227,6 +227,7 @@ def _check_tiff(path: Path, header: Any) -> None:
     with path.open("rb") as file:
         directory = tiff_directory(file)
         header.attribute(INTEROP_INDEX, interop_index(file))
+        header.attribute(SOFTWARE, exif_software(file))
     if directory.get(FILL_ORDER) == 2 and header.get_string_attribute("compression") == "zip":
         raise PhotoError("coding_not_read", path=path, kind="TIFF", problem="deflated, with bits in reverse order")
     if header.nchannels > 4 and EXTRA_SAMPLES not in directory:

@@ -49,7 +49,10 @@ MAKERS = {
 }
 
 #: Parts of the models of scanners, and of printers that scan, of all makers.
-_SCANNER_MODEL = r"scan|(office|desk|laser|page)jet|\b(mfc|dcp|fi|kv|scx)-|series$|bizhub|e-studio|taskalfa|\bd-lab"
+_SCANNER_MODEL = (
+    r"scan(?!pal)|(office|desk|laser|page)jet|\b(mfc|dcp|fi|kv|scx)-|\bmx-\d{3}|series$|aficio|bizhub|e-studio|taskalfa"
+    r"|\bd-lab"
+)
 
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
 PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
@@ -87,7 +90,11 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     "om digital": ((r"om-|e-|pen", _CAMERA), (r"", _COMPACT)),
     "pentax": ((r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT), (r"k|\*|645|q", _CAMERA)),
     "ricoh": ((r"pentax (k|\*|645|q)|k-|gxr", _CAMERA), (r"(ricoh )?theta", _UNKNOWN), (r"", _COMPACT)),
-    "leica": ((r"leitz phone", _PHONE), (r"[dvc]-lux|c \(|digilux( [12])?$|digilux 4|x|q", _COMPACT), (r"", _CAMERA)),
+    "leica": (
+        (r"leitz phone", _PHONE),
+        (r"[dvc]-lux|c \(|digilux( [12])?$|digilux 4|x|q|sofort", _COMPACT),
+        (r"", _CAMERA),
+    ),
     "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
     "minolta": ((r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
     "kodak": (
@@ -108,17 +115,17 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
 _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "jk imaging": "kodak", "asahi": "pentax"}
 _OTHER_NAMES |= {"seiko epson": "epson", "leitz": "leica", "konica": "minolta"}
 
-#: The makers of drones with thermal cameras, and the shape of such pictures: other cameras of drones have other shapes.
-_DRONES, _THERMAL_SHAPE = ("dji", "autel"), 1.25
+#: The makers of drones with thermal cameras, and the sizes of such pictures: other cameras of drones have other sizes.
+_DRONES, _THERMAL_SIZES = ("dji", "autel"), ((640, 512), (1280, 1024))
 
 
-def device_of(make: str, model: str, shape: float = 0.0) -> Device:
+def device_of(make: str, model: str, size: tuple[int, int] = (0, 0)) -> Device:
     """Return the kind of device by EXIF Make and Model, which may begin with the make; else UNKNOWN.
 
-    `shape` is the width of the picture divided by its height.
+    `size` is the width and the height of the picture.
     """
     maker = (make or model).casefold().strip()
-    if maker.startswith(_DRONES) and shape == _THERMAL_SHAPE:
+    if maker.startswith(_DRONES) and size in _THERMAL_SIZES:
         return _THERMAL
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker

@@ -10,10 +10,17 @@ DEVELOPERS = (
     *("aftershot", "ansel", "filmulator", "vkdt"),
 )
 
+#: Programs that merge exposures, or map high dynamic range to tones that differ from place to place.
+MERGERS = (
+    *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
+    *("dynamic photo", "enfuse", "hdr projects"),
+)
+
 #: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
 #: "Digital Camera X-E1 Ver2.00", "15.3.1", "G960USQS9FUG2") holds none of them.
 EDITORS = (
     *DEVELOPERS,
+    *MERGERS,
     *("adobe", "photoshop"),
     # raw developers of camera makers, and of the company behind some of them
     *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
@@ -26,9 +33,7 @@ EDITORS = (
     *("windows photo", "windows live photo", "microsoft photo", "photodirector", "movavi", "ashampoo", "magix"),
     *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
     *("siril", "pixinsight"),  # of astronomers
-    # HDR merging and panoramas
-    *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
-    *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects", "microsoft ice"),
+    *("hugin", "ptgui", "autopano", "microsoft ice"),  # of panoramas
     # on phones and in the web
     *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
     *("samsung photo editor", "darkroom", "lightleap", "helicon focus"),
@@ -45,7 +50,7 @@ def _any_of(names: Sequence[str]) -> re.Pattern[str]:
     return re.compile(r"(?<![a-z])(?:" + "|".join(map(re.escape, names)) + ")")
 
 
-_EDITOR, _DEVELOPER = _any_of(EDITORS), _any_of(DEVELOPERS)
+_EDITOR, _DEVELOPER, _MERGER = map(_any_of, (EDITORS, DEVELOPERS, MERGERS))
 
 
 def editor_name(software: str, history: Sequence[str] = ()) -> str:
@@ -64,3 +69,8 @@ def is_editor(software: str) -> bool:
 def is_developer(software: str) -> bool:
     """Return whether a program is mostly used to develop raw files, to tones other than the camera's."""
     return bool(_DEVELOPER.search(software.casefold()))
+
+
+def is_merger(software: str) -> bool:
+    """Return whether a program merges exposures, so that no response explains its pictures."""
+    return bool(_MERGER.search(software.casefold()))

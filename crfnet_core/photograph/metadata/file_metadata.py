@@ -13,6 +13,10 @@ Table = tuple[int, ...]  # a quantization table: 64 divisors, row by row
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
 
+#: Our name of EXIF Software in a header; OpenImageIO's `Software` is XMP's CreatorTool, the first program, where it is
+#: known.
+SOFTWARE = "Exif:Software"
+
 #: Entry of the header of a PNG or JPEG file that a renderer writes, unless its settings say otherwise -> the renderer.
 RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
@@ -26,7 +30,7 @@ class FileMetadata(CheckedFields):
     make: str = ""  # EXIF Make and Model: the camera, as it writes itself
     model: str = ""
     software: str = ""  # EXIF Software: the program that wrote the file last, or the camera's firmware
-    history: tuple[str, ...] = ()  # programs in the XMP history (stEvt:softwareAgent) that saved pixels, in order
+    history: tuple[str, ...] = ()  # XMP's CreatorTool, and the programs in its history that saved pixels, in order
     raw_file: str = ""  # XMP crs:RawFileName: the file that a program of Adobe developed; it may be an ordinary picture
     derived_from: str = ""  # XMP xmpMM:DerivedFrom, if it is a text: to darktable, the file that it developed
     renderer: str = ""  # the program that rendered the picture, so that no camera took it
@@ -53,9 +57,11 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     """Return the metadata in an open file's header, and in the segments of a JPEG; damaged fields stay empty."""
     jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
-    history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
-    if (_text(header, "stEvt:action"), _text(header, "stEvt:changed")) == ("saved", "/metadata"):
-        history = ""  # programs saved nothing but metadata, such as ratings
+    creator = _text(header, "Software")
+    software = jpeg.software or _text(header, SOFTWARE) or creator
+    agents, changed = (_list(header, f"stEvt:{name}") for name in ("softwareAgent", "changed"))
+    if len(agents) == len(changed):  # programs that saved nothing but metadata, such as ratings, are left out
+        agents = [agent for agent, parts in zip(agents, changed, strict=True) if parts != "/metadata"]
     has_profile = header_attribute(header, "ICCProfile") is not None  # else OpenImageIO has left out a damaged one
     color = header_color_tags(header, file_format, jpeg.interop_index)
     return replace(
@@ -64,9 +70,9 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         height=header.height,
         make=_text(header, "Make"),
         model=_text(header, "Model"),
-        software=_text(header, "Software"),
-        history=tuple(part.strip() for part in history.split(";") if part.strip()),
-        raw_file=_text(header, "crs:RawFileName"),
+        software=one_line(software),
+        history=(*[creator] * (creator != software), *agents),
+        raw_file=_text(header, "crs:RawFileName") * (_text(header, "crs:AlreadyApplied") != "False"),
         derived_from=_text(header, "xmpMM:DerivedFrom"),
         renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
         iso=_number(header, "Exif:PhotographicSensitivity"),
@@ -80,6 +86,12 @@ def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
     """Return a text in the header on one line of printable characters."""
     value = header_attribute(header, name)
     return one_line(value.rstrip("\0")[:longest]) if isinstance(value, str) else ""
+
+
+def _list(header: Any, name: str) -> list[str]:
+    """Return the texts of a list in the header, which OpenImageIO joins."""
+    parts = _text(header, name, longest=10 * LONGEST_TEXT).split(";")
+    return [part.strip() for part in parts if part.strip()]
 
 
 def _number(header: Any, name: str) -> int | None:

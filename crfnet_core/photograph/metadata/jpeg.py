@@ -9,7 +9,7 @@ from PIL.JpegImagePlugin import JpegImageFile
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, Table
 from crfnet_core.photograph.metadata.icc import DAMAGED
-from crfnet_core.photograph.metadata.tiff_tags import interop_index
+from crfnet_core.photograph.metadata.tiff_tags import exif_software, interop_index
 
 #: The tables of ITU-T T.81, Annex K, which the IJG library scales by a quality. The rest of the second is 99.
 ANNEX_K_LUMA: Table = (
@@ -41,12 +41,14 @@ def read_jpeg_header(content: bytes) -> FileMetadata:
         return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
     segments = [(name, bytes(payload)) for name, payload in image.applist]
+    exif = io.BytesIO(image.info.get("exif", b"")[6:])
     return FileMetadata(
         luma_table=tables[0] if tables else (),
         chroma_table=tables[1] if len(tables) > 1 else (),
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
-        interop_index=interop_index(io.BytesIO(image.info.get("exif", b"")[6:])),
+        software=exif_software(exif),
+        interop_index=interop_index(exif),
         color=ColorTags(source=DAMAGED if any(payload.startswith(_PROFILE) for _, payload in segments) else ""),
         has_gain_map=any(mark in payload for name, payload in segments for mark in _GAIN_MAPS),
     )

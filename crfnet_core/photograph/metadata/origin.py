@@ -98,7 +98,7 @@ class FileOrigin:
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
-    device = device_of(metadata.make, metadata.model, metadata.width / max(metadata.height, 1))
+    device = device_of(metadata.make, metadata.model, (metadata.width, metadata.height))
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_adobes = metadata.has_adobe or (bool(metadata.raw_file) and encoded_by is not False)

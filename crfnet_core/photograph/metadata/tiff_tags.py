@@ -7,6 +7,8 @@ from typing import BinaryIO
 #: Tags that lead to EXIF and to the InteroperabilityIndex; the type of a value of two bytes; the most entries read.
 _EXIF, _INTEROP, _INTEROP_INDEX, _SHORT, _MOST_ENTRIES = 34665, 40965, 1, 3, 4096
 
+_SOFTWARE, _LONGEST = 305, 200  # the tag of the program that wrote the file last; bytes of its name that are read
+
 
 def tiff_directory(file: BinaryIO, *tags: int) -> dict[int, int]:
     """Return tag -> value, or its place, of the first directory of TIFF or EXIF, or of that where `tags` lead."""
@@ -26,6 +28,13 @@ def interop_index(file: BinaryIO) -> str:
     file.seek(0)
     text = index.to_bytes(8, "little" if file.read(2) == b"II" else "big").strip(b"\0").decode("latin-1")
     return text if text.isalnum() else ""
+
+
+def exif_software(file: BinaryIO) -> str:
+    """Return Software of EXIF or a TIFF file; empty if it is absent or shorter than four characters."""
+    place = tiff_directory(file).get(_SOFTWARE, 0)
+    file.seek(min(place, 2**62))
+    return file.read(_LONGEST if place else 0).partition(b"\0")[0].decode("latin-1")
 
 
 def _entries(file: BinaryIO, place: int, width: int, number: Callable[[bytes], int]) -> dict[int, int]:

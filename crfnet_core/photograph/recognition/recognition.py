@@ -10,6 +10,7 @@ from pathlib import Path
 from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import Device, FileOrigin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.editors import is_merger
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition.levels import Levels, has_few_levels, is_limited_range, is_mostly_ends
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
@@ -33,6 +34,7 @@ class Kind(StrEnum):
     LIMITED_RANGE = "limited range"
     RENDERING = "rendering"
     THERMAL = "thermal picture"
+    MERGED = "merged exposures"
     SENT_COPY = "sent copy"
     FLAT = "flat frame"
     FEW_LEVELS = "few levels"
@@ -82,6 +84,8 @@ def recognize(
             return _recognized(Kind.RENDERING, "rendering", "rendering_advice", renderer=origin.renderer)
         if origin.device is Device.THERMAL:
             return _recognized(Kind.THERMAL, "thermal", "thermal_advice", camera=origin.camera)
+        if is_merger(origin.editor):
+            return _recognized(Kind.MERGED, "merged", "merged_advice", editor=origin.editor)
         if origin.is_sent_copy:
             return _recognized(Kind.SENT_COPY, "sent_copy", "sent_copy_advice", quality=origin.jpeg_quality)
     return flat if high - low < NARROW_RANGE else None

@@ -83,38 +83,38 @@ def test_noise_is_not_to_be_trusted_whoever_says_what_took_it(network, kind, dev
     assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.FLAT)
 
 
-def test_only_a_texture_whose_camera_is_named_is_not_noise(network):
+@pytest.mark.parametrize(
+    ("camera", "is_texture", "kind"), [("Canon", True, None), ("Canon", False, Kind.FLAT), ("", True, Kind.FLAT)]
+)
+def test_only_a_texture_whose_camera_is_named_is_not_noise(network, camera, is_texture, kind):
     """Lawns and gravel have nearly the thumbnails of noise, but neighboring pixels are alike."""
-    canon = FileMetadata(make="Canon", model="EOS R")
-    kinds = [
-        (estimated(pixels, network, metadata=metadata).recognition or None)
-        for pixels in (quantized(0.5 + 3 * (blurred(noise("gray")) - 0.5)), noise("gray"))
-        for metadata in (canon, FileMetadata())
-    ]
-    assert [kind and kind.kind for kind in kinds] == [None, Kind.FLAT, Kind.FLAT, Kind.FLAT]
+    pixels = quantized(0.5 + 3 * (blurred(noise("gray")) - 0.5)) if is_texture else noise("gray")
+    recognition = estimated(pixels, network, metadata=FileMetadata(make=camera)).recognition
+    assert (recognition and recognition.kind) is kind
 
 
-def test_a_gray_picture_is_trusted_only_if_a_camera_is_named(network, plate):
-    """Of gray pictures in plain encodings, from linear light to sRGB, a half looks like photographs."""
+@pytest.mark.parametrize(
+    ("options", "is_trusted"),
+    [({"metadata": FileMetadata(make="Canon")}, True), ({"device": Device.PHONE}, True), ({}, False)],
+)
+def test_a_gray_or_toned_picture_is_trusted_only_if_a_camera_is_named(network, plate, options, is_trusted):
+    """Of such pictures in plain encodings, from linear light to sRGB, a half looks like photographs."""
     pixels = read_photo(plate).pixels
-    gray = np.repeat(pixels[..., 1:2], 3, axis=2)
-    canon = FileMetadata(make="Canon", model="EOS R")
-    for metadata, device, is_trusted in ((canon, None, True), (None, Device.PHONE, True), (None, None, False)):
-        photo = Photo(pixels=gray, bit_depth=8, is_gray=True, path=Path("a.png"), metadata=metadata)
-        estimate = estimate_response(photo, network=network, options=AnalysisOptions(windows=4, device=device))
+    toned = quantized(pixels[..., 1:2] * (1, 0.98, 0.9) + np.random.default_rng(0).normal(0, 0.004, pixels.shape))
+    toned[:20, :200] = (1, 0, 0)  # a stamp
+    for gray in (np.repeat(pixels[..., 1:2], 3, axis=2), toned):
+        estimate = estimated(gray, network, **options)
         assert (estimate.verdict is Verdict.USABLE, estimate.recognition) == (is_trusted, None)
+    assert estimated(pixels, network).verdict is Verdict.USABLE
 
 
-def test_a_scanner_is_no_camera_and_the_prior_for_scans_is_advised(network, root):
-    picture = rendered(root, lambda light: light ** (1 / 2.2))
-    verdicts = {}
-    for name, prior in (("camera", None), ("any", Prior.load("any"))):
-        metadata = FileMetadata(make="EPSON", model="Perfection V600", file_format="JPEG")
-        photo = Photo(pixels=picture["pixels"], bit_depth=8, is_gray=False, path=Path("a.jpg"), metadata=metadata)
-        verdicts[name] = estimate_response(photo, network=network, prior=prior)
-    codes = {name: [warning.code for warning in estimate.warnings] for name, estimate in verdicts.items()}
-    assert verdicts["camera"].verdict is Verdict.DO_NOT_TRUST
-    assert ("scan" in codes["camera"], "scan" in codes["any"]) == (True, False)
+@pytest.mark.parametrize("prior", ["camera", "any"])
+def test_a_scanner_is_no_camera_and_the_prior_for_scans_is_advised(network, root, prior):
+    scan = rendered(root, lambda light: light ** (1 / 2.2))["pixels"]
+    photo = Photo(scan, 8, False, Path("a.jpg"), FileMetadata(make="EPSON", model="Perfection V600"))
+    estimate = estimate_response(photo, network=network, prior=Prior.load(prior))
+    is_advised = "scan" in [warning.code for warning in estimate.warnings]
+    assert (is_advised, estimate.verdict is Verdict.DO_NOT_TRUST or prior == "any") == (prior == "camera", True)
 
 
 @pytest.mark.parametrize(("camera", "verdict"), [({}, "do not trust"), ({"make": "Canon", "model": "EOS R"}, "usable")])

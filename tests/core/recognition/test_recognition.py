@@ -161,6 +161,8 @@ def origin_of(**fields):
         ({"renderer": "Blender"}, Kind.RENDERING, "Blender"),
         ({"make": "FLIR Systems AB", "model": "FLIR T640"}, Kind.THERMAL, "FLIR T640"),
         ({"make": "DJI", "model": "M3T", "width": 640, "height": 512}, Kind.THERMAL, "DJI M3T"),
+        ({"make": "NIKON", "model": "D750", "software": "enfuse 4.2"}, Kind.MERGED, "enfuse 4.2"),
+        ({"make": "DJI", "model": "FC3411", "width": 3750, "height": 3000}, None, ""),
         ({"make": "DJI", "model": "M3T", "width": 4000, "height": 3000}, None, ""),
     ],
 )

@@ -214,9 +214,14 @@ class TestBase:
         result = loaded(add(studio, tmp_path / "new", small_look).path)
         assert [space_of(result, name) for name in ("plate01.jpg", "other.xyz")] == [NAME, "curve"]
 
-    def test_a_folder_that_opencolorio_takes_for_a_variable_is_refused(self, studio, small_look, tmp_path):
-        moved = studio.parent.rename(tmp_path / "a$b") / studio.name
-        assert refusal_of(ConfigError, add, moved, tmp_path / "new", small_look).code == "base_folder_is_variable"
+    @pytest.mark.parametrize(("folder", "version"), [("a$b", 2), ("a:b", 1)])
+    def test_a_folder_that_opencolorio_misreads_is_refused(self, studio, small_look, tmp_path, folder, version):
+        if version == 1:
+            views = "{d: [!<View> {name: v, colorspace: lin}]}"
+            spaces = "[!<ColorSpace> {name: lin}]"
+            studio.write_text(f"ocio_profile_version: 1\ndisplays: {views}\ncolorspaces: {spaces}\n")
+        moved = studio.parent.rename(tmp_path / folder) / studio.name
+        assert refusal_of(ConfigError, add, moved, tmp_path / "new", small_look).code == "base_folder_is_misread"
 
 
 class TestAgain:

@@ -157,6 +157,7 @@ def test_a_plate_loses_the_rule_of_those_files_only_that_another_has(tmp_path):
     [
         *(("v2#.png", "v20001.png", True), ("v2#.png", "v#3.png", True), ("v2#.png", "v1#.png", False)),
         ("KAPI.jpg", "kap\u0131.jpg", True),  # I is the upper case of both letters
+        ("caf\u00e9.jpg", "cafe\u0301.jpg", True),  # two forms of Unicode
     ],
 )
 def test_patterns_are_shared_that_have_a_file_in_common(one, other, is_shared):
