@@ -174,7 +174,7 @@ SENTENCES: Mapping[str, str] = {
     "developed": "written by {editor}, as a rule from a raw file, and not by the camera: give the camera's own file;"
     " linear light, which such programs write, too, needs no estimate",
     "edited": "saved by {editor}, which may have changed the tones: give the camera's own file",
-    "gray": "gray or toned photograph: one channel says less than three, and it may be a mixture of channels",
+    "gray": "gray or toned: one channel says less than three, and it may be a mixture of channels",
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",
     "recognized": "{reason}",
     "scan": "a scan of film or paper: the prior for any source expects its tones, that for cameras does not",

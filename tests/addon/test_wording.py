@@ -42,7 +42,7 @@ def test_a_report_names_the_verdict_and_the_first_warning_in_few_words(found):
     assert report_line("plate", found, "done") == "plate: the response is usable; done"
     assert report_line("n" * 200, found, "done").startswith("n" * 22 + "..." + "n" * 23 + ": ")
     one = dataclasses.replace(found, warnings=(Notice("gray"),))
-    assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray or toned photograph); done"
+    assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray or toned); done"
     two = dataclasses.replace(found, warnings=(Notice("edited", {"editor": "GIMP"}), Notice("gray")))
     assert "(warning: saved by GIMP, and 1 more)" in report_line("plate", two, "done")
     other = dataclasses.replace(found, warnings=(Notice.from_text("of {braces}"),))

@@ -5,12 +5,7 @@ from crfnet_core.response.curve import LEAST_SLOPE, UNIFORM, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.families import with_headroom
 from training.data.scenes import LUMINANCE
-from training.evaluation.baselines import (
-    constant_curves,
-    nearest_power,
-    oracle_curves,
-    with_best_headroom,
-)
+from training.evaluation.baselines import constant_curves, nearest_power, oracle_curves, with_best_headroom
 from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, read_light
 
 
