@@ -58,7 +58,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
     jpeg = jpeg or FileMetadata()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     creator = _text(header, "Software")
-    software = jpeg.software or _text(header, SOFTWARE) or creator
+    software = one_line(jpeg.software or _text(header, SOFTWARE) or creator)
     agents, changed = (_list(header, f"stEvt:{name}") for name in ("softwareAgent", "changed"))
     if len(agents) == len(changed):  # programs that saved nothing but metadata, such as ratings, are left out
         agents = [agent for agent, parts in zip(agents, changed, strict=True) if parts != "/metadata"]
@@ -70,7 +70,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata | None 
         height=header.height,
         make=_text(header, "Make"),
         model=_text(header, "Model"),
-        software=one_line(software),
+        software=software,
         history=(*[creator] * (creator != software), *agents),
         raw_file=_text(header, "crs:RawFileName") * (_text(header, "crs:AlreadyApplied") != "False"),
         derived_from=_text(header, "xmpMM:DerivedFrom"),

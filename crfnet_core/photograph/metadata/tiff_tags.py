@@ -34,7 +34,7 @@ def exif_software(file: BinaryIO) -> str:
     """Return Software of EXIF or a TIFF file; empty if it is absent or shorter than four characters."""
     place = tiff_directory(file).get(_SOFTWARE, 0)
     file.seek(min(place, 2**62))
-    return file.read(_LONGEST if place else 0).partition(b"\0")[0].decode("latin-1")
+    return file.read(_LONGEST if place else 0).partition(b"\0")[0].decode(errors="replace")
 
 
 def _entries(file: BinaryIO, place: int, width: int, number: Callable[[bytes], int]) -> dict[int, int]:
