@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -11,7 +11,7 @@ _LOCKED_BYTE = 1 << 30  # Windows locks bytes, which nobody else can then read: 
 
 
 def lock(file: IO[Any], *, wait: bool = True) -> None:
-    """Lock a file; raise an OSError if another process has the lock and `wait` is False, or there are no locks."""
+    """Lock a file; if `wait` is False, raise an OSError if another process has the lock, or there are no locks."""
     if sys.platform == "win32":
         import msvcrt
 
@@ -20,7 +20,8 @@ def lock(file: IO[Any], *, wait: bool = True) -> None:
     else:
         import fcntl
 
-        fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with suppress(OSError) if wait else nullcontext():  # of a file system without locks
+            fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import time
 from concurrent.futures import Future
 from contextlib import nullcontext
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
@@ -166,14 +167,11 @@ def test_a_link_in_place_of_the_records_is_not_followed(estimate, photographs, o
 @pytest.mark.parametrize(
     "change",
     [
-        {"exposure": 10**400},
-        {"exposure": "much"},
-        {"exposure": True},
+        *({"exposure": exposure} for exposure in (10**400, "much", True)),
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
         {"primaries": {"name": "mine"} | {key: [0.3, 0.3] for key in ("red", "green", "blue", "white")}},
         *({name: 1} for name in ("photograph", "place")),
-        {"folder": "../elsewhere"},
-        {"folder": "/elsewhere"},
+        *({"folder": folder} for folder in ("../elsewhere", "/elsewhere")),
         {"linear": "../elsewhere/a.exr"},
     ],
 )
@@ -186,7 +184,10 @@ def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
     assert refusal_of(PlateError, file.read).code == "not_records"
 
 
-def test_an_error_does_not_hide_the_record_of_another_runs_files(tmp_path):
+@pytest.mark.parametrize("has_locks", [True, False])
+def test_an_error_does_not_hide_the_record_of_another_runs_files(tmp_path, monkeypatch, has_locks):
+    if not has_locks:
+        monkeypatch.setattr("fcntl.flock", Mock(side_effect=OSError("no locks")))
     file, names = RecordFile(tmp_path / ESTIMATES), {"photograph": "a.jpg", "place": "a.jpg"}
     (lut := tmp_path / "a.spi1d").touch()
     file.append(PhotographRecord(**names, lut="a.spi1d", exposure=-1, weights=(-0.5, 1)))
