@@ -43,7 +43,7 @@ SENTENCES: Mapping[str, str] = {
     "no_prior": "{name}: there is no prior ({reason}); give {names} or a JSON file",
     "prior_not_json": "{path}: is not JSON; see crfnet_core/data/priors for examples",
     # HEIC, AVIF and JPEG XL
-    "deep_avif_package_missing": "{path}: AVIF of {bits} bits needs PyAV: pip install av, or save it as 16-bit PNG",
+    "deep_avif_package_missing": "{path}: needs PyAV, as AVIF beyond 8 bits in full range does: pip install av",
     "heif_package_missing": "{path}: {kind} needs the package {package}; pip install pi-heif pillow",
     "jxl_linear": "{path}: this JPEG XL file is decoded to linear light, as lossy ones with a camera's ICC profile are;"
     " give the original that it was made from",

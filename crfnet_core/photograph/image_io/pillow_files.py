@@ -1,8 +1,8 @@
 """Read HEIC and AVIF, for which OpenImageIO's wheel has no reader, and BMP and WebP, which it does not read in full.
 
 It ignores the masks of BMP's channels, and of WebP the place of the first frame, or, before version 3.2, EXIF. HEIC is
-decoded by pi-heif, the others by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is decoded by PyAV,
-which is an optional dependency.
+decoded by pi-heif, the others by Pillow. Both stop at 8 bits of AVIF, and libyuv in Pillow bounds a factor of blue in
+limited range, so AVIF of 10 and 12 bits, or not in full range, is decoded by PyAV, which is an optional dependency.
 """
 
 import warnings
@@ -114,15 +114,17 @@ def _heic(_: Path, main: Any) -> _Picture:
 
 def _avif(path: Path, main: Any) -> _Picture:
     """Return the picture of an AVIF file as stored, by Pillow, which puts the boxes `irot` and `imir` into EXIF."""
-    bit_depth = main.info["bit_depth"] if main else 8
+    bit_depth, nclx = (main.info["bit_depth"], main.info.get("nclx_profile")) if main else (8, None)
+    is_exact = bit_depth <= 8 and bool(nclx and nclx["full_range_flag"])  # else Pillow's blue is off by up to 13 codes
     with warnings.catch_warnings(action="ignore"), AvifImageFile(path) as image:
         check_size(path, *image.size)
         info = dict(image.info)
         if main and sorted(main.size) != sorted(image.size):
             raise PhotoError("coding_not_read", path=path, kind="AVIF", problem="it is cropped by the box clap")
-        if bit_depth > 8 and image.mode == "RGBA":
-            raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=f"{bit_depth} bits with alpha")
-        samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
+        if not is_exact and image.mode == "RGBA":
+            problem = f"{bit_depth} bits with alpha" if bit_depth > 8 else "limited range with alpha"
+            raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=problem)
+        samples = np.asarray(image) if is_exact else _deep_avif(path, bit_depth, image.size)
     return _Picture(np.atleast_3d(samples), max(8, bit_depth), info, is_upright=False)
 
 

@@ -29,28 +29,31 @@ def test_xmp_does_not_turn_avif(tmp_path):
     assert np.abs(read_codes(tmp_path / "a.avif").codes.astype(int) - codes).max() <= 3
 
 
-def deep_avif(path, codes, color_range):
-    """Write codes of 10 bits as AVIF of 4:2:0 in limited (1) or full range (2)."""
+def deep_avif(path, codes, color_range, bits=10):
+    """Write codes as AVIF of 4:2:0 in limited (1) or full range (2) of BT.709."""
     av = pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
     if "libsvtav1" not in av.codecs_available:
         pytest.skip("needs libsvtav1")
-    picture = av.VideoFrame.from_ndarray(codes.astype(np.uint16) << 6, format="rgb48le")
-    frame = picture.reformat(format="yuv420p10le", dst_colorspace=1, dst_color_range=color_range)
+    form = "yuv420p" if bits == 8 else "yuv420p10le"
+    picture = av.VideoFrame.from_ndarray(codes.astype(np.uint16) << 16 - bits, format="rgb48le")
+    frame = picture.reformat(format=form, dst_colorspace=1, dst_color_range=color_range)
     with av.open(str(path), "w", format="avif") as container:
         stream = container.add_stream("libsvtav1", rate=1, options={"crf": "8"})
-        stream.width, stream.height, stream.pix_fmt = frame.width, frame.height, "yuv420p10le"
+        stream.width, stream.height, stream.pix_fmt = frame.width, frame.height, form
         stream.codec_context.color_range, stream.codec_context.colorspace = color_range, 1
         container.mux([*stream.encode(frame), *stream.encode()])
 
 
+@pytest.mark.parametrize("bits", [8, 10])
 @pytest.mark.parametrize("color_range", [1, 2])
-def test_avif_of_10_bits_with_odd_width_in_limited_and_full_range(tmp_path, color_range):
+def test_avif_with_odd_width_in_limited_and_full_range(tmp_path, color_range, bits):
+    """Of 8 bits in limited range, Pillow's blue is 4 codes off here."""
     x, y = np.meshgrid(np.arange(131), np.arange(98))
-    codes = np.dstack([x * 7, y * 10, 400 + x + y])
-    deep_avif(tmp_path / "a.avif", codes, color_range)
+    codes = np.dstack([x * 7, y * 5, 900 - x * 6]) >> 10 - bits
+    deep_avif(tmp_path / "a.avif", codes, color_range, bits)
     values = read_codes(tmp_path / "a.avif")
-    assert (values.codes.shape, values.bit_depth) == ((98, 131, 3), 10)
-    assert np.abs(values.codes.astype(int) - codes).mean() < 6
+    assert (values.codes.shape, values.bit_depth) == ((98, 131, 3), bits)
+    assert np.abs(values.codes.astype(int) - codes).mean(axis=(0, 1)).max() < 8 * 2**bits / 1024
 
 
 def test_the_range_of_the_box_overrides_the_stream(tmp_path):
@@ -64,25 +67,22 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
     assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
 
 
-def with_items(content, *others):
-    """Return the content of an AVIF with the items of others of the same size before its own, which stays the main."""
-    pictures = [dict(boxes(each))[b"mdat"] for each in (*others, content)]
-    count, meta = len(pictures), dict(boxes(dict(boxes(content))[b"meta"][4:]))
-    ipco, ipma = (dict(boxes(meta[b"iprp"]))[name] for name in (b"ipco", b"ipma"))
-    numbers = [struct.pack(">H", item) for item in range(1, count + 1)]
-    owners = ipma[:4] + struct.pack(">I", count) + b"".join(item + ipma[10:] for item in numbers)
-    entries = b"".join(box(b"infe", b"\2\0\0\0" + item + b"\0\0av01\0") for item in numbers)
-    head = box(b"hdlr", meta[b"hdlr"]) + box(b"pitm", bytes(4) + numbers[-1])
-    tail = box(b"iinf", bytes(4) + numbers[-1] + entries) + box(b"iprp", box(b"ipco", ipco) + box(b"ipma", owners))
+def with_item_before(content, other):
+    """Return the content of an AVIF with the item of another before its own, which stays the main one."""
+    pictures = [dict(boxes(each))[b"mdat"] for each in (other, content)]
+    meta = dict(boxes(dict(boxes(content))[b"meta"][4:]))
+    owned = dict(boxes(meta[b"iprp"]))
+    owners = bytes(7) + b"\2" + b"".join(item + owned[b"ipma"][10:] for item in (b"\0\1", b"\0\2"))
+    entries = b"".join(box(b"infe", b"\2\0\0\0" + item + b"\0\0av01\0") for item in (b"\0\1", b"\0\2"))
+    rest = box(b"hdlr", meta[b"hdlr"]) + box(b"pitm", b"\0\0\0\0\0\2") + box(b"iinf", b"\0\0\0\0\0\2" + entries)
+    rest += box(b"iprp", box(b"ipco", owned[b"ipco"]), box(b"ipma", owners))
 
     def before(place):
-        sizes = list(map(len, pictures))
-        starts = (place + sum(sizes[:item]) for item in range(count))
-        rows = map(struct.pack, [">HHHII"] * count, range(1, count + 1), [0] * count, [1] * count, starts, sizes)
-        iloc = box(b"iloc", bytes(4) + b"\x44\0" + numbers[-1] + b"".join(rows))
-        return box(b"ftyp", b"avif\0\0\0\0avifmif1miaf") + box(b"meta", bytes(4) + head + iloc + tail)
+        first, second = map(len, pictures)
+        iloc = struct.pack(">I5H2I3H2I", 0, 0x4400, 2, 1, 0, 1, place, first, 2, 0, 1, place + first, second)
+        return box(b"ftyp", b"avif\0\0\0\0avifmif1miaf") + box(b"meta", bytes(4), rest, box(b"iloc", iloc))
 
-    return before(len(before(0)) + 8) + box(b"mdat", b"".join(pictures))
+    return before(len(before(0)) + 8) + box(b"mdat", *pictures)
 
 
 def test_the_main_item_of_deep_avif_may_come_later(tmp_path):
@@ -90,7 +90,7 @@ def test_the_main_item_of_deep_avif_may_come_later(tmp_path):
     for name, picture in (("main.avif", codes), ("other.avif", codes[:, ::-1])):
         deep_avif(tmp_path / name, picture, 2)
     main, other = ((tmp_path / name).read_bytes() for name in ("main.avif", "other.avif"))
-    path = written(tmp_path / "both.avif", with_items(main, other))
+    path = written(tmp_path / "both.avif", with_item_before(main, other))
     np.testing.assert_array_equal(read_codes(path).codes, read_codes(tmp_path / "main.avif").codes)
 
 

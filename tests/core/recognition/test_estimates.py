@@ -113,8 +113,8 @@ def test_a_scanner_is_no_camera_and_the_prior_for_scans_is_advised(network, root
     scan = rendered(root, lambda light: light ** (1 / 2.2))["pixels"]
     photo = Photo(scan, 8, False, Path("a.jpg"), FileMetadata(make="EPSON", model="Perfection V600"))
     estimate = estimate_response(photo, network=network, prior=Prior.load(prior))
-    is_advised = "scan" in [warning.code for warning in estimate.warnings]
-    assert (is_advised, estimate.verdict is Verdict.DO_NOT_TRUST or prior == "any") == (prior == "camera", True)
+    assert ("scan" in [warning.code for warning in estimate.warnings]) is (prior == "camera")
+    assert estimate.verdict is Verdict.DO_NOT_TRUST or prior == "any"
 
 
 @pytest.mark.parametrize(("camera", "verdict"), [({}, "do not trust"), ({"make": "Canon", "model": "EOS R"}, "usable")])
